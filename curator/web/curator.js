@@ -18,6 +18,7 @@ const HINTS = {
 
 let tool = "look", take = false, through = false, openedId = "", parts = [];
 let kept = [], stroke = null; // strokes that wait for Find part; the one being drawn
+let pen = null;               // where the keyboard's pen is, [x, y] in the picture's pixels; null: put away
 let region = { triangles: 0, undo: 0, redo: 0, marks: false };
 
 // ---- messages
@@ -34,7 +35,7 @@ const eye = new Eye(stage, [picture, strokes], byId("quality"), {
     if (fingers > 1) {
       stroke = null;
       drawStrokes();
-    } else if (tool !== "look" && event.button === 0) startStroke(event);
+    } else if (tool !== "look" && event.button === 0) startStroke(pixelOf(event));
   },
   // Returns whether the movement draws, and does not turn.
   drag: (event, button) => {
@@ -92,20 +93,34 @@ function moved() {
 const colourOf = name => getComputedStyle(document.documentElement).getPropertyValue(name);
 
 function drawStrokes() {
-  const pen = strokes.getContext("2d");
-  pen.clearRect(0, 0, strokes.width, strokes.height);
-  pen.lineCap = pen.lineJoin = "round";
+  const ink = strokes.getContext("2d");
+  ink.clearRect(0, 0, strokes.width, strokes.height);
+  ink.lineCap = ink.lineJoin = "round";
   for (const one of stroke ? [...kept, stroke] : kept) {
     const closed = one.tool === "lasso" || one.tool === "heavy";
-    pen.beginPath();
-    for (let i = 0; i < one.points.length; i += 2) pen.lineTo(one.points[i], one.points[i + 1]);
-    if (closed && one !== stroke) pen.closePath();
-    pen.lineWidth = PEN_PX[one.tool];
-    pen.globalAlpha = one.tool === "lasso" ? 1 : 0.6;
-    pen.strokeStyle = one.tool === "rest" || (closed && one.take) ? colourOf("--no") : one.tool === "part" ? colourOf("--yes") : colourOf("--region");
-    pen.stroke();
+    ink.beginPath();
+    for (let i = 0; i < one.points.length; i += 2) ink.lineTo(one.points[i], one.points[i + 1]);
+    if (closed && one !== stroke) ink.closePath();
+    ink.lineWidth = PEN_PX[one.tool];
+    ink.globalAlpha = one.tool === "lasso" ? 1 : 0.6;
+    ink.strokeStyle = one.tool === "rest" || (closed && one.take) ? colourOf("--no") : one.tool === "part" ? colourOf("--yes") : colourOf("--region");
+    ink.stroke();
   }
-  pen.globalAlpha = 1;
+  ink.globalAlpha = 1;
+  if (pen) drawPen(ink);
+}
+
+function drawPen(ink) {
+  for (const [width, colour] of [[5, "#000c"], [2, "#fff"]]) {
+    ink.lineWidth = width;
+    ink.strokeStyle = colour;
+    ink.beginPath();
+    for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+      ink.moveTo(pen[0] + 5 * dx, pen[1] + 5 * dy);
+      ink.lineTo(pen[0] + 16 * dx, pen[1] + 16 * dy);
+    }
+    ink.stroke();
+  }
 }
 
 function pixelOf(event) {
@@ -132,14 +147,39 @@ function finishStroke() {
   drawStrokes();
 }
 
-function startStroke(event) {
+function startStroke(at) {
   if (eye.sharpView < 0) {
     tell("Wait until the picture is sharp.");
     return;
   }
   tell("");
-  stroke = { tool, take, points: pixelOf(event) };
+  stroke = { tool, take, points: [...at] };
   drawStrokes();
+}
+
+// ---- the keyboard's pen
+
+const PEN_KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+function takePen(taken) {
+  pen = taken ? [strokes.width / 2, strokes.height / 2] : null;
+  stroke = null;
+  byId("hint").textContent = pen ? "Pen: arrow keys move it, Space lowers and lifts it, Escape puts it away." : HINTS[tool];
+  drawStrokes();
+}
+
+// Returns whether the key was the pen's.
+function penKey(key, fine) {
+  if (PEN_KEYS[key]) {
+    const step = fine ? 2 : 12;
+    pen = pen.map((at, i) => Math.max(0, Math.min((i ? strokes.height : strokes.width) - 1, at + step * PEN_KEYS[key][i])));
+    if (stroke && stroke.points.length < 2 * STROKE_POINTS_MAX) stroke.points.push(...pen);
+    drawStrokes();
+  } else if (key === " ") stroke ? finishStroke() : startStroke(pen);
+  else if (key === "Escape" && stroke) { stroke = null; drawStrokes(); }
+  else if (key === "Escape" || key === "p") takePen(false);
+  else return false;
+  return true;
 }
 
 stage.addEventListener("dblclick", event => {
@@ -175,7 +215,7 @@ function radio(id, chosen) {
 const chooseTool = radio("tools", data => {
   tool = data.tool;
   stage.className = tool === "look" ? "looks" : "draws";
-  byId("hint").textContent = HINTS[tool];
+  takePen(false);
   showMarks();
 });
 const chooseSign = radio("sign", data => { take = data.take === "yes"; });
@@ -190,7 +230,7 @@ function showRegion() {
   byId("count").textContent = region.triangles.toLocaleString();
   byId("undo").disabled = !region.undo;
   byId("redo").disabled = !region.redo;
-  byId("grow").disabled = byId("shrink").disabled = byId("save").disabled = !region.triangles;
+  byId("grow").disabled = byId("shrink").disabled = byId("smooth").disabled = byId("save").disabled = !region.triangles;
   if (!may("editor")) byId("save").disabled = true;
   if (!region.marks && kept.length) { kept = []; drawStrokes(); }
   showMarks();
@@ -200,7 +240,7 @@ function apply() { tell(""); send({ type: "apply", view: eye.sharpView, take, th
 function clearStrokes() { kept = []; drawStrokes(); send({ type: "clear" }); }
 byId("apply").addEventListener("click", apply);
 byId("clear").addEventListener("click", clearStrokes);
-for (const type of ["undo", "redo", "grow", "shrink"])
+for (const type of ["undo", "redo", "grow", "shrink", "smooth"])
   byId(type).addEventListener("click", () => { tell(""); send({ type }); });
 
 // ---- parts
@@ -212,7 +252,7 @@ function showParts() {
     const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
     button.type = "button";
     button.textContent = part.title || part.id;
-    small.textContent = part.faces ? part.id : `${part.id} – a shape, not marked faces`;
+    small.textContent = part.faces ? part.id : "a shape, not marked";
     button.disabled = !part.faces;
     button.setAttribute("aria-current", String(part.id === openedId));
     button.append(small);
@@ -255,23 +295,26 @@ byId("fresh").addEventListener("click", () => {
 
 // ---- keys
 
+const REGION_KEYS = { g: "grow", h: "shrink", m: "smooth" };
 const ZOOM_KEYS = { "+": 0.8, "=": 0.8, "-": 1.25 };
 const TURN_KEYS = { ArrowLeft: [-30, 0], ArrowRight: [30, 0], ArrowUp: [0, -30], ArrowDown: [0, 30] };
 document.addEventListener("keydown", event => {
   if (!eye.camera || event.target.matches("input, select") || document.querySelector("dialog[open]")) return;
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, control = event.ctrlKey || event.metaKey;
   let done = true;
+  if (pen && !control && document.activeElement === stage && penKey(key, event.shiftKey)) { event.preventDefault(); return; }
   if (control && key === "z") send({ type: event.shiftKey ? "redo" : "undo" });
   else if (control && key === "y") send({ type: "redo" });
   else if (control) done = false;
   else if (TURN_KEYS[key] && document.activeElement === stage) event.shiftKey ? eye.pan(...TURN_KEYS[key]) : eye.turn(...TURN_KEYS[key]);
+  else if (key === "p" && tool !== "look") { stage.focus(); takePen(true); }
   else if (key >= "1" && key <= "5") chooseTool(Number(key) - 1);
   else if (key === "a" || key === "t") chooseSign(key === "t" ? 1 : 0);
   else if (key === "s" || key === "d") chooseDepth(key === "d" ? 1 : 0);
   else if (key === "Enter" && region.marks && document.activeElement === stage) apply();
   else if (key === "Escape") { stroke = null; clearStrokes(); }
   else if (ZOOM_KEYS[key] && document.activeElement === stage) eye.zoom(ZOOM_KEYS[key]);
-  else if (key === "g" || key === "h") send({ type: key === "g" ? "grow" : "shrink" });
+  else if (REGION_KEYS[key]) send({ type: REGION_KEYS[key] });
   else done = false;
   if (done) event.preventDefault();
 });

@@ -38,11 +38,18 @@ function locate(problem) {
   return { ...problem, part: page ? page[1] : named ? named[1] : "", language: page ? page[2] : "" };
 }
 
+// A build's sentence says what to write into parts.json; here there is a field for it.
+function forPage(text) {
+  const names = new Intl.DisplayNames([], { type: "language" });
+  const short = text.replace(/^part "[^"]*"[:,]? /, "").replace(/: add "[a-z]+": .*$/, "").replace(/in "([A-Za-z-]+)"/, (all, code) => `in ${names.of(code)}`);
+  return short[0].toUpperCase() + short.slice(1);
+}
+
 function showProblems(list) {
   byId("problems").replaceChildren(...list.map(problem => {
     const item = document.createElement("li");
     item.className = problem.error ? "error" : "";
-    item.textContent = `${problem.language && problem.language !== language ? `${problem.language}: ` : ""}${problem.text}`;
+    item.textContent = `${problem.language && problem.language !== language ? `${problem.language}: ` : ""}${forPage(problem.text)}`;
     return item;
   }));
 }

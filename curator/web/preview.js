@@ -18,6 +18,10 @@ export async function showPreview(part, language, text) {
   addresses = [];
   for (let n = 0; n < KINDS.length; n++) {
     const [kind, words] = KINDS[n], image = document.createElement("img"), caption = figures[n].firstElementChild;
+    if (kind === "page" && part.without_page && text === null) {
+      caption.textContent = "Opened: it has no page yet";
+      continue;
+    }
     try {
       const picture = await askPicture("POST", "/api/preview", { part: part.id, language, kind, ...(text === null ? {} : { html: text }) });
       if (mine !== newest) return;

@@ -200,11 +200,16 @@ function goBack(release) {
 
 export function setUpPublishing() {
   byId("open-publish").hidden = false;
-  byId("open-publish").addEventListener("click", () => {
+  const open = () => {
     byId("publish").showModal();
     loadState();
     loadChanges();
-  });
+  };
+  byId("open-publish").addEventListener("click", open);
+  if (location.hash === "#publish") { // as the other pages link here
+    history.replaceState(null, "", "/");
+    open();
+  }
   byId("publish").addEventListener("close", () => clearTimeout(poll));
   byId("close-publish").addEventListener("click", () => byId("publish").close());
   byId("publish-form").addEventListener("submit", event => {

@@ -54,7 +54,7 @@ function form(stop, n, tour, context) {
       labelled("Flight to it", "seconds", seconds(stop, "travel", "by its length", context.changed))),
     element("div", { className: "line" },
       button("Look from here", context.look, "Bring the eye to this stop"),
-      button("Set to what you see", context.set, "This stop gets the present eye"),
+      button("Set to this view", context.set, "This stop gets the present eye"),
       button("Remove", context.remove, "Remove this stop", "danger")));
 }
 

@@ -41,8 +41,20 @@ done
 ! user remove "$work/content" otto || fail "it removes whom it does not know"
 user list "$work/content" && grep -q '^editor  *ana$' "$work/log" || fail "the list: $(cat "$work/log")"
 
-bytes=$(cat curator/web/* | wc -c)
-[ "$bytes" -lt 153600 ] || fail "the pages have $bytes bytes"
+# What a browser loads before the first picture: a page, its styles, and its scripts with all that they import.
+python3 - <<-'PY' || fail "a page is too large"
+	import pathlib, re, sys
+	web, page_bytes = pathlib.Path("curator/web"), {}
+	for page in web.glob("*.html"):
+	    files, todo = {page.name}, [page.name]
+	    while todo:
+	        for name in re.findall(r'(?:href="|src="|from "\./)([a-z_]+\.(?:css|js))"', (web / todo.pop()).read_text()):
+	            if name not in files:
+	                files.add(name), todo.append(name)
+	    page_bytes[page.name] = sum((web / name).stat().st_size for name in files)
+	print(page_bytes)
+	sys.exit(max(page_bytes.values()) >= 150 * 1024 or min(page_bytes.values()) < 4096)
+PY
 
 # ---- a session
 build/gopura-curator "$work/content" --port 0 >"$work/curator.log" 2>&1 &

@@ -41,9 +41,13 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
   const target = targetInfos.find(one => one.type === "page");
   ({ sessionId: session } = await send("Target.attachToTarget", { targetId: target.targetId, flatten: true }));
   for (const domain of ["Page", "Runtime", "Log"]) await send(`${domain}.enable`);
-  await send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
-  await send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }] });
-  if (touch) await send("Emulation.setTouchEmulationEnabled", { enabled: true });
+  // May be changed while a page is shown.
+  async function look({ width, height, dark = false, touch = false }) {
+    await send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: false });
+    await send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }, { name: "pointer", value: touch ? "coarse" : "fine" }] });
+    await send("Emulation.setTouchEmulationEnabled", { enabled: touch });
+  }
+  await look({ width, height, dark, touch });
 
   const sleep = ms => new Promise(resolve => setTimeout(resolve, ms));
   async function evaluate(expression) {
@@ -53,7 +57,7 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
   }
   return {
     complaints, // what the page's scripts threw, and what it could not load
-    send, evaluate, sleep,
+    send, evaluate, sleep, look,
     go: async url => { await send("Page.navigate", { url }); await sleep(300); },
     // Waits until an expression is true.
     until: async (expression, what = expression, ms = 60000) => {
@@ -66,7 +70,8 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
     },
     type: text => send("Input.insertText", { text }),
     key: async (key, modifiers = 0, code = 0) => {
-      for (const type of ["keyDown", "keyUp"]) await send("Input.dispatchKeyEvent", { type, key, code: key, modifiers, windowsVirtualKeyCode: code });
+      const text = { Enter: "\r", " ": " " }[key]; // what presses a button
+      for (const type of ["keyDown", "keyUp"]) await send("Input.dispatchKeyEvent", { type, key, code: key, modifiers, windowsVirtualKeyCode: code, ...(type === "keyDown" && text ? { text } : {}) });
     },
     picture: async path => writeFileSync(path, Buffer.from((await send("Page.captureScreenshot", { format: "png" })).data, "base64")),
     close: async () => {
