@@ -32,6 +32,8 @@ int command_keys(int argc, char **argv);
 int command_publish(int argc, char **argv);
 /* verify: checks a whole release. */
 int command_verify(int argc, char **argv);
+/* reconstruct: makes a surface of aligned range images. */
+int command_reconstruct(int argc, char **argv);
 /* render: draws reference pictures of the scan. */
 int command_render(int argc, char **argv);
 /* sample: renders the sampling images. */

@@ -10,6 +10,7 @@ static const struct command commands[] = {
 	{ "build", "make a signed release of a content folder", command_build },
 	{ "import", "read scans, report what was found and repaired", command_import },
 	{ "temple", "write the demo temple with any number of triangles", command_temple },
+	{ "reconstruct", "make one surface of aligned range images", command_reconstruct },
 	{ "publish", "make a signed release from what is built, or undo a release",
 	  command_publish },
 	{ "verify", "check everything in a release", command_verify },
@@ -30,7 +31,7 @@ static void print_help(void)
 	     "\n"
 	     "usage: gopura-content COMMAND [OPTIONS]\n");
 	for (const struct command *c = commands; c->name; c++)
-		printf("  %-11s %s\n", c->name, c->summary);
+		printf("  %-12s %s\n", c->name, c->summary);
 	puts("\ngopura-content COMMAND --help explains a command, with examples.");
 }
 

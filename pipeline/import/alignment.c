@@ -1,5 +1,5 @@
-/* Parses MeshLab's alignments and projects, takes the models of manifests, and checks names,
- * matrices and files. */
+/* Parses MeshLab's alignments and projects and Stanford's registrations, takes the models of
+ * manifests, and checks names, matrices and files. */
 #include "pipeline/import/alignment.h"
 
 #include <ctype.h>
@@ -16,6 +16,7 @@
 #include "base/array.h"
 #include "base/bytes.h"
 #include "base/json_text.h"
+#include "pipeline/import/alignment_conf.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/manifest.h"
 
@@ -33,7 +34,7 @@ struct reading {
 bool alignment_is_named(const char *name)
 {
 	return import_has_extension(name, ".aln") || import_has_extension(name, ".mlp") ||
-	       import_has_extension(name, ".json");
+	       import_has_extension(name, ".conf") || import_has_extension(name, ".json");
 }
 
 void alignment_finish(struct alignment *alignment)
@@ -227,6 +228,49 @@ static int read_aln(struct reading *reading, char *text)
 				       "correct the count",
 				       SHOWN_BYTES, line, count);
 	return 0;
+}
+
+/* ---- registrations: a line for each scan */
+
+/* Of a line with "mesh", for Stanford's own tools, the scan may be missing. */
+static bool is_there(const struct reading *reading, const char *name)
+{
+	struct stat status;
+	char *path = NULL;
+	const bool found =
+		join_path(reading, reading->line, name, &path) == 0 && stat(path, &status) == 0;
+
+	free(path);
+	return found;
+}
+
+static int read_conf(struct reading *reading, char *text)
+{
+	struct alignment_conf_line parsed;
+	const char *line;
+	int rc = 0;
+
+	reading->at = text;
+	while (rc == 0 && (line = next_line(reading))) {
+		rc = alignment_conf_parse(&parsed, line);
+		if (rc < 0)
+			return diagnostics_add(reading->diagnostics, rc, reading->path,
+					       reading->line,
+					       "expected: bmesh NAME, three numbers that move it "
+					       "and a quaternion x y z w, not '%.*s'",
+					       SHOWN_BYTES, line);
+		if (rc > 0 && parsed.is_optional && !is_there(reading, parsed.name))
+			diagnostics_add(&reading->alignment->left_out, 0, reading->path,
+					reading->line, "%.*s is not there and is left out",
+					SHOWN_BYTES, parsed.name);
+		else if (rc > 0)
+			rc = add_scan(reading, reading->line, parsed.name, parsed.matrix);
+		rc = rc < 0 ? rc : 0;
+	}
+	if (rc == 0 && reading->alignment->count == 0)
+		rc = diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, 0,
+				     "it places no scan (no line begins with bmesh)");
+	return rc;
 }
 
 /* ---- projects: MeshLabProject, MeshGroup, and an MLMesh with an MLMatrix44 for each scan */
@@ -525,6 +569,8 @@ int alignment_read(struct alignment *out, const char *path, struct diagnostics *
 		rc = read_manifest(&reading, &file);
 	else if (import_has_extension(path, ".mlp"))
 		rc = read_mlp(&reading, (struct bytes){ file.data, file.size - 1 });
+	else if (import_has_extension(path, ".conf"))
+		rc = read_conf(&reading, (char *)file.data);
 	else
 		rc = read_aln(&reading, (char *)file.data);
 	if (rc == 0)

@@ -1,5 +1,6 @@
 /* Reads which scans belong together and where each of them lies: MeshLab's alignments (.aln, text)
- * and projects (.mlp, XML), and IIIF manifests (.json). docs/import.md has the formats. */
+ * and projects (.mlp, XML), Stanford's registrations (.conf, text) and IIIF manifests (.json).
+ * docs/import.md has the formats. */
 #ifndef GOPURA_PIPELINE_IMPORT_ALIGNMENT_H
 #define GOPURA_PIPELINE_IMPORT_ALIGNMENT_H
 
@@ -22,7 +23,7 @@ struct alignment {
 	struct diagnostics left_out; /* warnings: what of a manifest is not imported */
 };
 
-/* Returns whether the name ends with .aln, .mlp or .json, in any case of letters. */
+/* Returns whether the name ends with .aln, .mlp, .conf or .json, in any case of letters. */
 bool alignment_is_named(const char *name);
 
 /* Reads the file and checks that every scan it names is a file in its folder or below. *out is

@@ -225,8 +225,11 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 		     const struct import_options *options, struct import_report *report,
 		     struct diagnostics *diagnostics)
 {
-	const struct ply_visitor visitor = { collector, take_vertex, take_triangle, show_progress,
-					     import_jobs(options) };
+	const struct ply_visitor visitor = { .data = collector,
+					     .vertex = take_vertex,
+					     .triangle = take_triangle,
+					     .advance = show_progress,
+					     .jobs = import_jobs(options) };
 	int rc = allocate(collector);
 
 	collector->progress = progress_start("reading the scan", "KiB", ply_bytes_total(ply) >> 10);

@@ -173,6 +173,16 @@ static int end_face(struct pass *pass)
 	return 0;
 }
 
+static int end_cell(struct pass *pass)
+{
+	const struct ply *ply = pass->ply;
+
+	if (!pass->visitor->cell)
+		return 0;
+	return pass->visitor->cell(pass->visitor->data, pass->index,
+				   ply->corner_count > 0 ? (int64_t)ply->corners[0] : -1);
+}
+
 /* ---- elements */
 
 static int list_item(struct pass *pass, enum ply_slot slot, double value)
@@ -291,6 +301,8 @@ static int read_one(struct pass *pass, const enum ply_type types[PLY_SLOT_NONE])
 		rc = end_vertex(pass, types);
 	if (rc == 0 && pass->element->kind == PLY_KIND_FACE)
 		rc = end_face(pass);
+	if (rc == 0 && pass->element->kind == PLY_KIND_GRID)
+		rc = end_cell(pass);
 	return rc;
 }
 

@@ -30,6 +30,11 @@ struct ply_summary {
 	bool has_open_sky;     /* alpha holds the open share of the sky ("comment gopura open") */
 	bool has_uv;           /* per vertex */
 	bool has_corner_uv;    /* per corner of a face */
+	bool has_normal;       /* per vertex */
+	bool has_confidence;   /* per vertex */
+	/* From "obj_info num_cols" and "num_rows", which range images have; 0: not said. */
+	uint32_t grid_columns, grid_rows;
+	uint64_t grid_cells; /* of the element range_grid; 0: there is none */
 	bool is_ascii;
 	uint32_t texture_count;
 	/* Names from "comment TextureFile"; borrowed from the reader. */
@@ -42,6 +47,8 @@ struct ply_vertex {
 	double position[3]; /* in the file's unit and axes */
 	uint8_t colour[4];  /* sRGB and open sky; 255 if the file has none */
 	float uv[2];        /* as in the file: v = 0 at the bottom; 0 if it has none */
+	float normal[3];    /* as in the file, of any length; 0 if it has none */
+	float confidence;   /* as in the file; 1 if it has none */
 };
 
 struct ply_triangle {
@@ -64,6 +71,8 @@ struct ply_visitor {
 	/* Another so many bytes of the file were read; NULL: not wanted. */
 	void (*advance)(void *data, uint64_t bytes);
 	uint32_t jobs; /* number of threads; 0: only the caller's */
+	/* A cell of a range image, row by row: the vertex seen there, or -1. NULL: not wanted. */
+	int (*cell)(void *data, uint64_t index, int64_t vertex);
 };
 
 /* Opens the file and reads its header. *out is owned by the caller; it is NULL on failure.

@@ -16,7 +16,7 @@ static uint8_t colour_byte(double value, enum ply_type type)
 void ply_vertex_from(struct ply_vertex *out, const struct ply_summary *summary,
 		     const double values[PLY_SLOT_NONE], const enum ply_type types[PLY_SLOT_NONE])
 {
-	*out = (struct ply_vertex){ .colour = { 255, 255, 255, 255 } };
+	*out = (struct ply_vertex){ .colour = { 255, 255, 255, 255 }, .confidence = 1 };
 	for (int k = 0; k < 3; k++)
 		out->position[k] = values[PLY_SLOT_X + k];
 	for (int k = 0; k < 3 && summary->has_colour; k++)
@@ -25,6 +25,10 @@ void ply_vertex_from(struct ply_vertex *out, const struct ply_summary *summary,
 		out->colour[3] = colour_byte(values[PLY_SLOT_ALPHA], types[PLY_SLOT_ALPHA]);
 	for (int k = 0; k < 2 && summary->has_uv; k++)
 		out->uv[k] = (float)values[PLY_SLOT_U + k];
+	for (int k = 0; k < 3 && summary->has_normal; k++)
+		out->normal[k] = (float)values[PLY_SLOT_NORMAL_X + k];
+	if (summary->has_confidence)
+		out->confidence = (float)values[PLY_SLOT_CONFIDENCE];
 }
 
 void ply_types_of(enum ply_type types[PLY_SLOT_NONE], const struct ply_element *element)

@@ -64,6 +64,10 @@ static enum ply_slot slot_named(enum ply_kind kind, const char *name, bool is_li
 		{ "texture_v", PLY_SLOT_V, false, false },
 		{ "texture_s", PLY_SLOT_U, false, false },
 		{ "texture_t", PLY_SLOT_V, false, false },
+		{ "nx", PLY_SLOT_NORMAL_X, false, false },
+		{ "ny", PLY_SLOT_NORMAL_Y, false, false },
+		{ "nz", PLY_SLOT_NORMAL_Z, false, false },
+		{ "confidence", PLY_SLOT_CONFIDENCE, false, false },
 		{ "vertex_indices", PLY_SLOT_CORNERS, true, true },
 		{ "vertex_index", PLY_SLOT_CORNERS, true, true },
 		{ "texcoord", PLY_SLOT_CORNER_UVS, true, true },
@@ -142,6 +146,8 @@ static enum ply_kind kind_named(const char *name)
 		return PLY_KIND_VERTEX;
 	if (strcmp(name, "face") == 0)
 		return PLY_KIND_FACE;
+	if (strcmp(name, "range_grid") == 0)
+		return PLY_KIND_GRID;
 	return strcmp(name, "tristrips") == 0 ? PLY_KIND_STRIP : PLY_KIND_OTHER;
 }
 
@@ -164,8 +170,6 @@ static int read_element(struct ply *ply, const char *words, struct diagnostics *
 		if (strcmp(ply->elements[i].name, element->name) == 0)
 			return line_fault(ply, diagnostics,
 					  "this element stands in the header twice");
-	if (strcmp(element->name, "range_grid") == 0)
-		ply->range_grid = true;
 	ply->element_count++;
 	return 0;
 }
@@ -225,6 +229,17 @@ static int read_comment(struct ply *ply, const char *words, struct diagnostics *
 	return 0;
 }
 
+/* Of the many facts that scanners write there, the size of the grid of a range image. */
+static void read_info(struct ply *ply, const char *words)
+{
+	unsigned number;
+
+	if (sscanf(words, "num_cols %u", &number) == 1)
+		ply->summary.grid_columns = number;
+	else if (sscanf(words, "num_rows %u", &number) == 1)
+		ply->summary.grid_rows = number;
+}
+
 /* Returns what follows the word if the line begins with it, otherwise NULL. */
 static const char *after_word(const char *line, const char *word)
 {
@@ -252,7 +267,9 @@ static int read_header_line(struct ply *ply, const char *line, bool *has_format,
 		return read_property(ply, words, diagnostics);
 	if ((words = after_word(line, "comment")))
 		return read_comment(ply, words, diagnostics);
-	if (!after_word(line, "obj_info") && line[0])
+	if ((words = after_word(line, "obj_info")))
+		read_info(ply, words);
+	else if (line[0])
 		ply->summary.strange_lines++;
 	return 0;
 }
@@ -339,6 +356,10 @@ static int judge_vertices(struct ply *ply, const struct ply_element *element,
 			      has_slot(element, PLY_SLOT_GREEN) && has_slot(element, PLY_SLOT_BLUE);
 	summary->has_open_sky = ply->gopura_open && has_slot(element, PLY_SLOT_ALPHA);
 	summary->has_uv = has_slot(element, PLY_SLOT_U) && has_slot(element, PLY_SLOT_V);
+	summary->has_normal = has_slot(element, PLY_SLOT_NORMAL_X) &&
+			      has_slot(element, PLY_SLOT_NORMAL_Y) &&
+			      has_slot(element, PLY_SLOT_NORMAL_Z);
+	summary->has_confidence = has_slot(element, PLY_SLOT_CONFIDENCE);
 	return 0;
 }
 
@@ -347,10 +368,11 @@ static void note_why_points_only(struct ply *ply)
 	if (ply->summary.face_count > 0)
 		return;
 	ply->summary.points_only =
-		ply->range_grid
-			? "it is one range image (a range_grid of points), not a surface; "
-			  "save it as a mesh, or merge the aligned range images into one"
-			: "it holds points or lines but no faces; reconstruct a surface first";
+		ply->summary.grid_cells > 0
+			? "it is one range image (a range_grid of points), not a surface; make one "
+			  "of all aligned range images with gopura-content reconstruct"
+			: "it holds points or lines but no faces; make a surface of it with "
+			  "gopura-content reconstruct";
 }
 
 int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics)
@@ -376,6 +398,8 @@ int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics)
 		left -= element->count * least;
 		if (element->kind == PLY_KIND_VERTEX)
 			rc = judge_vertices(ply, element, diagnostics);
+		else if (element->kind == PLY_KIND_GRID && has_slot(element, PLY_SLOT_CORNERS))
+			ply->summary.grid_cells = element->count;
 		else if (element->kind != PLY_KIND_OTHER && has_slot(element, PLY_SLOT_CORNERS))
 			ply->summary.face_count += element->count;
 		ply->summary.has_corner_uv |=

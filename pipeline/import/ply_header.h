@@ -39,6 +39,10 @@ enum ply_slot {
 	PLY_SLOT_ALPHA,
 	PLY_SLOT_U,
 	PLY_SLOT_V,
+	PLY_SLOT_NORMAL_X,
+	PLY_SLOT_NORMAL_Y,
+	PLY_SLOT_NORMAL_Z,
+	PLY_SLOT_CONFIDENCE,
 	PLY_SLOT_CORNERS,    /* list of vertex indices */
 	PLY_SLOT_CORNER_UVS, /* list of u v u v ... */
 	PLY_SLOT_TEXTURE,
@@ -53,7 +57,7 @@ struct ply_property {
 	uint32_t offset; /* bytes from the start of the element, if it has no list */
 };
 
-enum ply_kind { PLY_KIND_VERTEX, PLY_KIND_FACE, PLY_KIND_STRIP, PLY_KIND_OTHER };
+enum ply_kind { PLY_KIND_VERTEX, PLY_KIND_FACE, PLY_KIND_STRIP, PLY_KIND_GRID, PLY_KIND_OTHER };
 
 struct ply_element {
 	char name[PLY_NAME_BYTES];
@@ -75,7 +79,7 @@ struct ply {
 	struct ply_summary summary;
 	char *textures[PLY_TEXTURES_MAX]; /* owned */
 	bool cr_only;                     /* lines end with CR alone */
-	bool gopura_open, range_grid;
+	bool gopura_open;
 	uint64_t trailing, lines_skipped, triangles;
 	/* Corners of the current polygon, PLY_CORNERS_MAX each; owned. */
 	uint32_t *corners;

@@ -1,6 +1,6 @@
-/* An alignment of scans: what begins with '<' as MeshLab's project, with '{' as a manifest, all
- * else as text. It is refused with its name, or every scan of it lies in its folder and has a
- * matrix that can be applied. */
+/* An alignment of scans: what begins with '<' as MeshLab's project, with '{' as a manifest, with
+ * 'b' as a registration, all else as text. It is refused with its name, or every scan of it lies in
+ * its folder and has a matrix that can be applied. */
 #include <math.h>
 
 #include "pipeline/import/alignment.h"
@@ -22,6 +22,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	const char *name = size > 0 && data[0] == '<'   ? "site.mlp"
 			   : size > 0 && data[0] == '{' ? "site.json"
+			   : size > 0 && data[0] == 'b' ? "site.conf"
 							: "site.aln";
 	struct diagnostics diagnostics = { 0 };
 	struct alignment alignment;

@@ -29,13 +29,21 @@ static int see_triangle(void *data, uint64_t index, const struct ply_triangle *t
 	return 0;
 }
 
+static int see_cell(void *data, uint64_t index, int64_t vertex)
+{
+	if (vertex < -1 || vertex >= (int64_t)vertex_count)
+		abort();
+	*(uint64_t *)data += index;
+	return 0;
+}
+
 /* Errors name the file; success leaves no fault behind. */
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	uint64_t sum = 0;
-	const struct ply_visitor visitor = { .data = &sum,
-					     .vertex = see_vertex,
-					     .triangle = see_triangle };
+	const struct ply_visitor visitor = {
+		.data = &sum, .vertex = see_vertex, .triangle = see_triangle, .cell = see_cell
+	};
 	struct diagnostics diagnostics = { 0 };
 	int fd = memfd_create("ply", MFD_CLOEXEC);
 	struct ply *ply;

@@ -38,6 +38,7 @@ may_enter() {
 	render/scene) answer="display plan patches lumigraph" ;;
 	pipeline/import) answer="keys" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import" ;;
+	pipeline/octree) answer="import" ;;
 	pipeline/hierarchy) answer="import material" ;;
 	pipeline/samples) answer="import content material hierarchy" ;;
 	pipeline/release) answer="keys import content hierarchy samples" ;;
@@ -66,6 +67,7 @@ is_public() {
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
+	pipeline/octree/*) names="reconstruct mesh_ply" ;;
 	pipeline/keys/*) names="keys keys_place" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;

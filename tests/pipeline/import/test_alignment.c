@@ -103,11 +103,39 @@ static void reads_a_project(void **state)
 	alignment_finish(&alignment);
 }
 
+/* The quaternion is that of the inverse rotation, as in Stanford's files. */
+static void reads_a_registration(void **state)
+{
+	static const char text[] =
+		"camera 0 -0.1 -0.7 0 1 0 0\nmesh gone_cyl 0 0 0 0 0 0 1\n"
+		"bmesh a.ply 0 0 0 0 0 0 1\r\n"
+		"bmesh in/d.ply 5 0.25 -1 0 0 -0.70710678118654752 0.70710678118654752\n";
+	const double from[3] = { 1, 2, 3 };
+	struct diagnostics diagnostics = { 0 };
+	struct alignment alignment;
+	double to[3];
+	(void)state;
+
+	if (read_text(&alignment, "site.conf", text, strlen(text), &diagnostics) < 0)
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(alignment.count == 2 && path_ends(&alignment.scans[1], "/in/d.ply"));
+	CHECK(alignment.left_out.count == 1 &&
+	      strstr(alignment.left_out.first.text, "site.conf:2: gone_cyl is not there"));
+	transform_point(&alignment.scans[1].transform, from, to);
+	CHECK(fabs(to[0] - 3) < 1e-12 && fabs(to[1] - 1.25) < 1e-12 && fabs(to[2] - 2) < 1e-12);
+	alignment_finish(&alignment);
+}
+
 static void refuses_with_line_and_cure(void **state)
 {
 	static const struct {
 		const char *name, *text, *says;
 	} cases[] = {
+		{ "number.conf", "bmesh a.ply 0 0 0 0 0 1\n", ":1: expected: bmesh NAME" },
+		{ "turn.conf", "\nbmesh a.ply 0 0 0 0 0 0 0\n", ":2: expected: bmesh NAME" },
+		{ "none.conf", "camera 0 0 0\n", "places no scan" },
+		{ "gone.conf", "bmesh gone.ply 0 0 0 0 0 0 1\n", ":1: scan " },
+		{ "far.conf", "bmesh a.ply 1e300 0 0 0 0 0 1\n", "beyond 1e12" },
 		{ "e.aln", "", "must begin with the number of its scans" },
 		{ "n.aln", "a.ply\n#\n" ROWS "0\n",
 		  ":1: must begin with the number of its scans, not 'a.ply'" },
@@ -288,6 +316,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(reads_an_alignment),
 		cmocka_unit_test(reads_a_project),
+		cmocka_unit_test(reads_a_registration),
 		cmocka_unit_test(refuses_with_line_and_cure),
 		cmocka_unit_test(tells_every_scan_that_is_missing),
 		cmocka_unit_test(refuses_more_scans_than_a_mesh_takes),

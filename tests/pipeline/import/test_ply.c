@@ -318,6 +318,50 @@ static void says_why_a_scan_has_no_surface(void **state)
 	CHECK(strstr(seen.summary.points_only, "range image") && seen.summary.strange_lines == 1);
 }
 
+static int see_cell(void *data, uint64_t index, int64_t vertex)
+{
+	int64_t *cells = data;
+
+	CHECK(index < 6);
+	cells[index] = vertex;
+	return 0;
+}
+
+static int pass_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
+{
+	(void)data;
+	CHECK(vertex->confidence == (index == 0 ? 0.5f : 0.25f));
+	CHECK(vertex->normal[2] == (index == 0 ? 1 : -1));
+	return 0;
+}
+
+static void reads_range_grids_normals_and_confidence(void **state)
+{
+	static const char text[] =
+		HEAD "obj_info is_mesh 0\nobj_info num_cols 3\nobj_info num_rows 2\n"
+		     "element vertex 2\n" XYZ "property float nx\nproperty float ny\n"
+		     "property float nz\nproperty float confidence\nelement range_grid 6\n" FACES
+		     "0 0 0 0 0 1 0.5\n1 0 0 0 0 -1 0.25\n0\n1 1\n0\n0\n1 0\n0\n";
+	static const int64_t expected[6] = { -1, 1, -1, -1, 0, -1 };
+	int64_t cells[6];
+	const struct ply_visitor visitor = {
+		.data = cells, .vertex = pass_vertex, .triangle = see_triangle, .cell = see_cell
+	};
+	struct diagnostics diagnostics = { 0 };
+	int fd = memfd_create("ply", MFD_CLOEXEC);
+	struct ply *ply;
+	(void)state;
+
+	CHECK(write(fd, text, strlen(text)) > 0 && lseek(fd, 0, SEEK_SET) == 0);
+	CHECK(ply_open_fd(&ply, fd, "scan.ply", &diagnostics) == 0);
+	CHECK(ply_summary(ply)->grid_columns == 3 && ply_summary(ply)->grid_rows == 2);
+	CHECK(ply_summary(ply)->grid_cells == 6 && ply_summary(ply)->face_count == 0);
+	CHECK(ply_summary(ply)->has_normal && ply_summary(ply)->has_confidence);
+	CHECK(ply_read(ply, &visitor, &diagnostics) == 0);
+	CHECK(memcmp(cells, expected, sizeof(cells)) == 0);
+	ply_close(ply);
+}
+
 static void refills_its_buffer_without_losing_its_place(void **state)
 {
 	struct seen seen;
@@ -505,6 +549,7 @@ int main(void)
 		cmocka_unit_test(ends_of_header_lines_do_not_eat_data),
 		cmocka_unit_test(refuses_what_cannot_be_right),
 		cmocka_unit_test(says_why_a_scan_has_no_surface),
+		cmocka_unit_test(reads_range_grids_normals_and_confidence),
 		cmocka_unit_test(refills_its_buffer_without_losing_its_place),
 		cmocka_unit_test(any_number_of_threads_delivers_the_same),
 		cmocka_unit_test(a_fault_is_told_alike_by_any_number_of_threads),

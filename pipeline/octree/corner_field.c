@@ -1,0 +1,191 @@
+/* Adds points to the corners around them. */
+#include "pipeline/octree/corner_field.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/spill.h"
+
+/* All corners of a cube that the surface crosses lie within sqrt(3) of it. */
+static const double reach_out = 2.5;
+/* A tangent plane soon leaves the surface, above all at edges: it ends not far beyond the next
+ * point. */
+static const double reach_aside_least = 1.5, reach_aside_spacings = 1.5, reach_aside_most = 4;
+
+void corner_field_finish(struct corner_field *field)
+{
+	if (!field)
+		return;
+	map_finish(&field->map);
+	spill_free(field->blocks);
+	spill_free(field->corners);
+	spill_free(field->colours);
+	*field = (struct corner_field){ 0 };
+}
+
+uint32_t corner_field_find(const struct corner_field *field, const int32_t block[3])
+{
+	const uint64_t found =
+		field->map.capacity ? map_get(&field->map, field_key(block)) : MAP_NONE;
+
+	return found == MAP_NONE ? UINT32_MAX : (uint32_t)found;
+}
+
+static int grow(struct corner_field *field)
+{
+	const uint32_t room = field->room + field->room / 2 + 256;
+	int rc = field->room >= FIELD_BLOCKS_MAX ? -EFBIG : 0;
+
+	if (rc == 0)
+		rc = SPILL_RESIZE(field->blocks, field->room, room);
+	if (rc == 0)
+		rc = SPILL_RESIZE(field->corners, field->room, room);
+	if (rc == 0 && field->has_colour)
+		rc = SPILL_RESIZE(field->colours, field->room, room);
+	if (rc == 0)
+		field->room = room;
+	return rc;
+}
+
+static int find_or_add(struct corner_field *field, const int32_t block[3], uint32_t *out)
+{
+	int rc;
+
+	*out = corner_field_find(field, block);
+	if (*out != UINT32_MAX)
+		return 0;
+	if (field->block_count == field->room) {
+		rc = grow(field);
+		if (rc < 0)
+			return rc;
+	}
+	rc = map_set(&field->map, field_key(block), field->block_count);
+	if (rc < 0)
+		return rc;
+	memcpy(field->blocks[field->block_count], block, sizeof(field->blocks[0]));
+	*out = field->block_count++;
+	return 0;
+}
+
+/* A point in cells from corner 0 0 0. */
+struct splat {
+	const struct range_point *point;
+	double at[3];
+	double reach_aside, reach; /* along the tangent plane; in any direction */
+};
+
+static void add_to_corner(struct corner_field *field, uint32_t block, uint32_t index,
+			  const struct splat *splat, const double from[3])
+{
+	struct field_corner *corner = &field->corners[block][index];
+	const float *normal = splat->point->normal;
+	const double out = from[0] * (double)normal[0] + from[1] * (double)normal[1] +
+			   from[2] * (double)normal[2];
+	const double aside = from[0] * from[0] + from[1] * from[1] + from[2] * from[2] - out * out;
+	const float near = 1 - (float)(aside / (splat->reach_aside * splat->reach_aside) +
+				       out * out / (reach_out * reach_out));
+	const float weight = splat->point->weight * near * near * near * near;
+
+	if (!(near > 0))
+		return;
+	corner->sum += weight * (float)out;
+	corner->weight += weight;
+	for (int k = 0; k < 3 && field->has_colour && corner->weight > 0; k++) {
+		uint16_t *colour = &field->colours[block][index][k];
+		const float step = (256.0f * splat->point->colour[k] - *colour) * weight;
+
+		*colour = (uint16_t)lrintf(*colour + step / corner->weight);
+	}
+}
+
+/* Adds to the corners of one block, from first to last in each direction. */
+static void add_to_block(struct corner_field *field, uint32_t block, const int32_t first[3],
+			 const int32_t last[3], const struct splat *splat)
+{
+	const double most = splat->reach * splat->reach;
+	double from[3];
+
+	for (int32_t z = first[2]; z <= last[2]; z++) {
+		from[2] = z - splat->at[2];
+		for (int32_t y = first[1]; y <= last[1]; y++) {
+			const double part =
+				(y - splat->at[1]) * (y - splat->at[1]) + from[2] * from[2];
+
+			from[1] = y - splat->at[1];
+			for (int32_t x = first[0]; x <= last[0] && part < most; x++) {
+				const int32_t mask = FIELD_BLOCK_SIDE - 1;
+				const uint32_t index =
+					(uint32_t)(((z & mask) * FIELD_BLOCK_SIDE + (y & mask)) *
+							   FIELD_BLOCK_SIDE +
+						   (x & mask));
+
+				from[0] = x - splat->at[0];
+				if (from[0] * from[0] + part < most)
+					add_to_corner(field, block, index, splat, from);
+			}
+		}
+	}
+}
+
+static int32_t least(int32_t a, int32_t b)
+{
+	return a < b ? a : b;
+}
+
+static int32_t most(int32_t a, int32_t b)
+{
+	return a > b ? a : b;
+}
+
+static int add_point(struct corner_field *field, const struct splat *splat)
+{
+	int32_t low[3], high[3], block[3], first[3], last[3];
+
+	for (int k = 0; k < 3; k++) {
+		if (!(fabs(splat->at[k]) < 1e9))
+			return -EFBIG;
+		low[k] = (int32_t)ceil(splat->at[k] - splat->reach);
+		high[k] = (int32_t)floor(splat->at[k] + splat->reach);
+	}
+	for (block[2] = low[2] >> FIELD_BLOCK_SHIFT; block[2] <= high[2] >> FIELD_BLOCK_SHIFT;
+	     block[2]++)
+		for (block[1] = low[1] >> FIELD_BLOCK_SHIFT;
+		     block[1] <= high[1] >> FIELD_BLOCK_SHIFT; block[1]++)
+			for (block[0] = low[0] >> FIELD_BLOCK_SHIFT;
+			     block[0] <= high[0] >> FIELD_BLOCK_SHIFT; block[0]++) {
+				uint32_t found;
+				int rc = find_or_add(field, block, &found);
+
+				if (rc < 0)
+					return rc;
+				for (int k = 0; k < 3; k++) {
+					const int32_t start = block[k] * FIELD_BLOCK_SIDE;
+
+					first[k] = most(low[k], start);
+					last[k] = least(high[k], start + FIELD_BLOCK_SIDE - 1);
+				}
+				add_to_block(field, found, first, last, splat);
+			}
+	return 0;
+}
+
+int corner_field_add(struct corner_field *field, const struct range_scan *scan)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < scan->count && rc == 0; i++) {
+		struct splat splat = { .point = &scan->points[i] };
+
+		for (int k = 0; k < 3; k++)
+			splat.at[k] = (splat.point->at[k] - field->origin[k]) / field->cell;
+		splat.reach_aside = fmin(
+			reach_aside_most,
+			fmax(reach_aside_least,
+			     reach_aside_spacings * (double)splat.point->spacing / field->cell));
+		splat.reach = fmax(reach_out, splat.reach_aside);
+		rc = add_point(field, &splat);
+		spill_pass(i);
+	}
+	return rc;
+}

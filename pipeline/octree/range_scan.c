@@ -1,0 +1,296 @@
+/* Collects the points of a PLY and finds their normals: from the grid, the file or the faces. */
+#include "pipeline/octree/range_scan.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+#include "pipeline/import/ply.h"
+#include "pipeline/octree/range_grid.h"
+
+struct collector {
+	const struct ply_summary *summary;
+	struct range_point *points; /* owned; in the axes of the file */
+	struct range_grid grid;
+	double (*face_normals)[3]; /* of each vertex, summed; owned; NULL: no faces */
+};
+
+/* ---- reading */
+
+static int take_vertex(void *data, uint32_t index, const struct ply_vertex *vertex)
+{
+	struct collector *collector = data;
+	struct range_point *point = &collector->points[index];
+
+	*point = (struct range_point){ .weight = vertex->confidence };
+	memcpy(point->at, vertex->position, sizeof(point->at));
+	memcpy(point->normal, vertex->normal, sizeof(point->normal));
+	memcpy(point->colour, vertex->colour, sizeof(point->colour));
+	for (int k = 0; k < 3; k++)
+		if (!isfinite(point->at[k]))
+			point->weight = 0;
+	if (!(point->weight > 0) || !isfinite(point->weight))
+		point->weight = 0;
+	return 0;
+}
+
+static int take_cell(void *data, uint64_t index, int64_t vertex)
+{
+	struct collector *collector = data;
+
+	collector->grid.cells[index] = vertex < 0 ? RANGE_NO_POINT : (uint32_t)vertex;
+	return 0;
+}
+
+static int take_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
+{
+	struct collector *collector = data;
+	const double *p[3];
+	double n[3];
+
+	(void)index;
+	if (!collector->face_normals)
+		return 0;
+	for (int k = 0; k < 3; k++)
+		p[k] = collector->points[triangle->corner[k]].at;
+	for (int k = 0; k < 3; k++) {
+		const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+		n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) -
+		       (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
+	}
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3 && isfinite(n[i]); i++)
+			collector->face_normals[triangle->corner[k]][i] += n[i];
+	return 0;
+}
+
+/* Says whether the file is a range image: 1, 0, or -EBADMSG. */
+static int judge_grid(const struct ply_summary *summary, const char *path,
+		      struct diagnostics *diagnostics)
+{
+	const uint64_t cells = (uint64_t)summary->grid_columns * summary->grid_rows;
+
+	if (summary->grid_cells > 0 && cells != summary->grid_cells)
+		return diagnostics_add(diagnostics, -EBADMSG, path, 0,
+				       "its range_grid has %" PRIu64
+				       " cells, but obj_info num_cols and num_rows say %u times "
+				       "%u; correct these lines of its header",
+				       summary->grid_cells, summary->grid_columns,
+				       summary->grid_rows);
+	return summary->grid_cells > 0 ||
+	       (cells > 0 && cells == summary->vertex_count && summary->face_count == 0);
+}
+
+static int judge(const struct ply_summary *summary, int is_grid, const char *path,
+		 struct diagnostics *diagnostics)
+{
+	if (summary->vertex_count == 0)
+		return diagnostics_add(diagnostics, -EBADMSG, path, 0,
+				       "it holds no points; export it again");
+	if (!is_grid && !summary->has_normal && summary->face_count == 0)
+		return diagnostics_add(
+			diagnostics, -EBADMSG, path, 0,
+			"its points have neither a range_grid nor normals (nx ny nz): "
+			"which side is outside is unknown; export the range image, or "
+			"compute normals (MeshLab: Compute normals for point sets)");
+	return 0;
+}
+
+/* The header's counts were checked against the file's length, so they are safe to allocate. */
+static int allocate(struct collector *collector, bool is_grid)
+{
+	const struct ply_summary *summary = collector->summary;
+	const uint64_t cells = (uint64_t)summary->grid_columns * summary->grid_rows;
+
+	collector->points = malloc(summary->vertex_count * sizeof(*collector->points));
+	if (is_grid) {
+		collector->grid.columns = summary->grid_columns;
+		collector->grid.rows = summary->grid_rows;
+		collector->grid.cells = malloc(cells * sizeof(*collector->grid.cells));
+	} else if (!summary->has_normal) {
+		collector->face_normals =
+			calloc(summary->vertex_count, sizeof(*collector->face_normals));
+	}
+	if (!collector->points || (is_grid && !collector->grid.cells) ||
+	    (!is_grid && !summary->has_normal && !collector->face_normals))
+		return -ENOMEM;
+	/* Without a range_grid, the vertices themselves are the cells. */
+	for (uint64_t i = 0; is_grid && i < cells; i++)
+		collector->grid.cells[i] = (uint32_t)i;
+	return 0;
+}
+
+/* ---- normals and lines of sight */
+
+static void set_sight(struct collector *collector, enum range_sight sight)
+{
+	float axis[3] = { 0 };
+
+	if (sight == RANGE_SIGHT_AUTO)
+		sight = collector->grid.cells
+				? range_grid_sight(&collector->grid, collector->points)
+				: RANGE_SIGHT_AUTO;
+	if (sight >= RANGE_SIGHT_MINUS_X)
+		axis[sight - RANGE_SIGHT_MINUS_X] = -1;
+	else if (sight >= RANGE_SIGHT_PLUS_X)
+		axis[sight - RANGE_SIGHT_PLUS_X] = 1;
+	for (uint64_t i = 0; i < collector->summary->vertex_count; i++) {
+		struct range_point *point = &collector->points[i];
+
+		for (int k = 0; k < 3; k++)
+			point->towards[k] =
+				sight == RANGE_SIGHT_ORIGIN ? -(float)point->at[k] : axis[k];
+		vec_normalise(point->towards);
+	}
+}
+
+static void drop_missing(struct collector *collector)
+{
+	struct range_grid *grid = &collector->grid;
+
+	for (uint64_t i = 0; i < (uint64_t)grid->columns * grid->rows; i++) {
+		const struct range_point *point;
+
+		if (grid->cells[i] == RANGE_NO_POINT)
+			continue;
+		point = &collector->points[grid->cells[i]];
+		/* Without a range_grid, scanners write 0 0 0 where they saw nothing. */
+		if (!(point->weight > 0) ||
+		    (collector->summary->grid_cells == 0 && point->at[0] == 0 &&
+		     point->at[1] == 0 && point->at[2] == 0))
+			grid->cells[i] = RANGE_NO_POINT;
+	}
+}
+
+static int orient(struct collector *collector, enum range_sight sight, double *spacing)
+{
+	if (collector->grid.cells)
+		drop_missing(collector);
+	set_sight(collector, sight);
+	*spacing = 0;
+	if (collector->grid.cells)
+		return range_grid_orient(spacing, &collector->grid, collector->points,
+					 (uint32_t)collector->summary->vertex_count);
+	for (uint64_t i = 0; i < collector->summary->vertex_count; i++) {
+		struct range_point *point = &collector->points[i];
+		double length = 0;
+
+		for (int k = 0; k < 3 && collector->face_normals; k++)
+			length = fmax(length, fabs(collector->face_normals[i][k]));
+		for (int k = 0; k < 3 && length > 0; k++)
+			point->normal[k] = (float)(collector->face_normals[i][k] / length);
+		if (!(vec_normalise(point->normal) > 0) || !isfinite(point->normal[0]))
+			point->weight = 0;
+	}
+	return 0;
+}
+
+/* Moves what a direction of the file is to the common axes. */
+static void turn(float direction[3], const struct transform *transform)
+{
+	float turned[3];
+
+	for (int i = 0; i < 3; i++) {
+		turned[i] = 0;
+		for (int k = 0; k < 3; k++)
+			turned[i] += (float)transform->rows[i][k] * direction[k];
+	}
+	vec_copy(direction, turned);
+	vec_normalise(direction);
+}
+
+/* Drops the points without weight and moves the others to the common axes. */
+static void keep_good(struct range_scan *scan, struct collector *collector,
+		      const struct transform *transform)
+{
+	const uint32_t all = (uint32_t)collector->summary->vertex_count;
+	double scale = 0;
+
+	for (int k = 0; k < 3 && transform; k++)
+		scale += transform->rows[k][0] * transform->rows[k][0];
+	scale = transform ? sqrt(scale) : 1;
+	scan->spacing *= scale;
+	for (uint32_t i = 0; i < all; i++) {
+		struct range_point *point = &collector->points[i];
+
+		if (!(point->weight > 0))
+			continue;
+		if (transform) {
+			transform_point(transform, point->at, point->at);
+			turn(point->normal, transform);
+			turn(point->towards, transform);
+			point->spacing *= (float)scale;
+		}
+		collector->points[scan->count++] = *point;
+	}
+	scan->dropped = all - scan->count;
+	scan->points = collector->points;
+	collector->points = NULL;
+}
+
+int range_scan_read(struct range_scan *out, const char *path, const struct transform *transform,
+		    enum range_sight sight, struct diagnostics *diagnostics)
+{
+	struct collector collector = { 0 };
+	const struct ply_visitor visitor = { .data = &collector,
+					     .vertex = take_vertex,
+					     .triangle = take_triangle,
+					     .cell = take_cell };
+	struct ply *ply;
+	int is_grid = 0, rc = ply_open(&ply, path, diagnostics);
+
+	*out = (struct range_scan){ 0 };
+	if (rc < 0)
+		return rc;
+	collector.summary = ply_summary(ply);
+	is_grid = judge_grid(collector.summary, path, diagnostics);
+	rc = is_grid < 0 ? is_grid : judge(collector.summary, is_grid, path, diagnostics);
+	if (rc == 0)
+		rc = allocate(&collector, is_grid > 0);
+	if (rc == 0)
+		rc = ply_read(ply, &visitor, diagnostics);
+	if (rc == 0)
+		rc = orient(&collector, sight, &out->spacing);
+	if (rc == 0) {
+		out->has_colour = collector.summary->has_colour;
+		out->grid_columns = collector.grid.columns;
+		keep_good(out, &collector, transform);
+		if (out->count == 0)
+			rc = diagnostics_add(diagnostics, -EBADMSG, path, 0,
+					     "none of its points has a place and a normal; export "
+					     "it again");
+	}
+	if (rc == -ENOMEM)
+		diagnostics_add(diagnostics, rc, path, 0, "too large for this machine's memory");
+	ply_close(ply);
+	free(collector.points);
+	free(collector.grid.cells);
+	free(collector.face_normals);
+	if (rc < 0)
+		range_scan_finish(out);
+	return rc;
+}
+
+void range_scan_finish(struct range_scan *scan)
+{
+	if (!scan)
+		return;
+	free(scan->points);
+	*scan = (struct range_scan){ 0 };
+}
+
+bool range_sight_named(const char *name, enum range_sight *out)
+{
+	static const char *const names[] = { "auto", "origin", "+x", "+y", "+z", "-x", "-y", "-z" };
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (strcmp(name, names[i]) == 0) {
+			*out = (enum range_sight)i;
+			return true;
+		}
+	return false;
+}

@@ -1,0 +1,274 @@
+#include "pipeline/octree/reconstruct.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "tests/check.h"
+#include "tests/pipeline/import/scan_text.h"
+#include "tests/pipeline/octree/bumpy_ball.h"
+
+enum { VIEWS = 14, GRID = 64 };
+
+static char folder_file[256]; /* names the folder of the scans */
+static char paths[VIEWS][320];
+static struct transform places[VIEWS];
+static struct reconstruct_scan scans[VIEWS];
+
+static void make_scans(double noise_m)
+{
+	scan_write(folder_file, "about", "", 0);
+	srand(1);
+	for (int v = 0; v < VIEWS; v++) {
+		snprintf(paths[v], sizeof(paths[v]), "%.*s/view-%d.ply",
+			 (int)(strrchr(folder_file, '/') - folder_file), folder_file, v);
+		ball_write(paths[v], v, GRID, noise_m, v % 2 == 1);
+		places[v] = ball_view(v);
+		scans[v] = (struct reconstruct_scan){ paths[v], &places[v] };
+	}
+}
+
+static double rms_m(const struct mesh *mesh, double *worst)
+{
+	double sum = 0;
+
+	*worst = 0;
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		const double at[3] = { (double)mesh->positions[i][0], (double)mesh->positions[i][1],
+				       (double)mesh->positions[i][2] };
+		const double off = fabs(ball_outside(at));
+
+		sum += off * off;
+		*worst = fmax(*worst, off);
+	}
+	return sqrt(sum / mesh->vertex_count);
+}
+
+/* Six times the volume that a mesh encloses: above 0 if its triangles face outwards. */
+static double volume6(const struct mesh *mesh)
+{
+	double sum = 0;
+
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		const float *a = mesh->positions[mesh->triangles[t][0]];
+		const float *b = mesh->positions[mesh->triangles[t][1]];
+		const float *c = mesh->positions[mesh->triangles[t][2]];
+
+		for (int k = 0; k < 3; k++)
+			sum += (double)a[k] * (double)(b[(k + 1) % 3] * c[(k + 2) % 3] -
+						       b[(k + 2) % 3] * c[(k + 1) % 3]);
+	}
+	return sum;
+}
+
+static struct mesh run(const struct reconstruct_options *options, uint32_t count,
+		       struct reconstruct_report *report)
+{
+	struct diagnostics diagnostics = { 0 };
+	struct mesh mesh;
+	const int rc = reconstruct(&mesh, scans, count, options, report, &diagnostics);
+
+	if (rc < 0)
+		fail_msg("%s", diagnostics_cause(&diagnostics, rc));
+	return mesh;
+}
+
+/* Noise is averaged over the 5 to 10 points around each corner, and over the scans. */
+static void finds_the_true_surface_without_and_with_noise(void **state)
+{
+	static const struct {
+		double noise_m, rms_most_m, worst_most_m;
+	} cases[] = { { 0, 0.0006, 0.002 }, { 0.001, 0.0008, 0.003 }, { 0.005, 0.002, 0.008 } };
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct reconstruct_options options = { .cell = 0.025 };
+
+		make_scans(cases[i].noise_m);
+		for (int closed = 0; closed < 2; closed++) {
+			struct reconstruct_report report;
+			struct mesh mesh;
+			double rms, worst;
+
+			options.is_closed = closed;
+			mesh = run(&options, VIEWS, &report);
+			rms = rms_m(&mesh, &worst);
+			print_message("noise %g mm, %s: rms %.3f mm, worst %.2f mm, %u triangles, "
+				      "%u parts, %u border edges\n",
+				      1000 * cases[i].noise_m, closed ? "closed" : "open",
+				      1000 * rms, 1000 * worst, mesh.triangle_count, report.parts,
+				      report.border_edges);
+			CHECK(rms < cases[i].rms_most_m && worst < cases[i].worst_most_m);
+			CHECK(report.parts == 1 && report.border_edges == 0 &&
+			      report.crowded_edges == 0);
+			CHECK(report.range_images == VIEWS && mesh.triangle_count > 8000);
+			CHECK(volume6(&mesh) > 6 * 0.5 && volume6(&mesh) < 6 * 0.55);
+			mesh_finish(&mesh);
+		}
+		scan_remove(folder_file);
+	}
+}
+
+static void keeps_colours(void **state)
+{
+	const struct reconstruct_options options = { .cell = 0.025 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	(void)state;
+
+	make_scans(0);
+	mesh = run(&options, VIEWS, &report);
+	CHECK(mesh.colours);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++) {
+		const double expected = 127 + 200 * (double)mesh.positions[i][0];
+
+		CHECK(fabs(mesh.colours[i][2] - expected) < 6 && mesh.colours[i][1] == 100);
+	}
+	mesh_finish(&mesh);
+	scan_remove(folder_file);
+}
+
+/* One view sees half of the ball: open, there is nothing behind; closed, no edge is open. */
+static void is_open_or_watertight_as_asked(void **state)
+{
+	struct reconstruct_options options = { .cell = 0.025 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	(void)state;
+
+	make_scans(0);
+	mesh = run(&options, 1, &report);
+	CHECK(report.border_edges > 100);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++)
+		CHECK(mesh.positions[i][0] > -0.15f);
+	mesh_finish(&mesh);
+	for (uint32_t count = 1; count < VIEWS; count += 4) {
+		options.is_closed = true;
+		mesh = run(&options, count, &report);
+		CHECK(report.border_edges == 0 && report.crowded_edges == 0);
+		CHECK(volume6(&mesh) > 0);
+		mesh_finish(&mesh);
+	}
+	scan_remove(folder_file);
+}
+
+static void depth_sets_the_number_of_cubes(void **state)
+{
+	const struct reconstruct_options options = { .depth = 5 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	(void)state;
+
+	make_scans(0);
+	mesh = run(&options, VIEWS, &report);
+	CHECK(fabs(report.cell * 32 - (report.high[0] - report.low[0])) < 0.1);
+	mesh_finish(&mesh);
+	scan_remove(folder_file);
+}
+
+/* ---- one file */
+
+static int read_text(const char *text, struct diagnostics *diagnostics)
+{
+	struct range_scan scan;
+	char path[256];
+	int rc;
+
+	*diagnostics = (struct diagnostics){ 0 };
+	scan_write(path, "one.ply", text, strlen(text));
+	rc = range_scan_read(&scan, path, NULL, RANGE_SIGHT_AUTO, diagnostics);
+	CHECK(rc < 0 || scan.count > 0);
+	CHECK((rc < 0) == (strstr(diagnostics->first.text, "one.ply") != NULL));
+	range_scan_finish(&scan);
+	scan_remove(path);
+	return rc;
+}
+
+static void refuses_what_is_no_scan_with_a_cure(void **state)
+{
+#define HEAD         "ply\nformat ascii 1.0\n"
+#define XYZ          "property float x\nproperty float y\nproperty float z\n"
+#define GRID_ELEMENT "property list uchar int vertex_indices\nend_header\n"
+	static const struct {
+		const char *name, *text, *says;
+	} cases[] = {
+		{ "points", HEAD "element vertex 1\n" XYZ "end_header\n0 0 0\n",
+		  "compute normals" },
+		{ "nothing", HEAD "element vertex 0\n" XYZ "end_header\n", "no points" },
+		{ "cells",
+		  HEAD "obj_info num_cols 3\nobj_info num_rows 2\nelement vertex 1\n" XYZ
+		       "element range_grid 4\n" GRID_ELEMENT "0 0 0\n0\n0\n0\n0\n",
+		  "has 4 cells" },
+		{ "index",
+		  HEAD "obj_info num_cols 2\nobj_info num_rows 1\nelement vertex 1\n" XYZ
+		       "element range_grid 2\n" GRID_ELEMENT "0 0 0\n1 7\n0\n",
+		  "range_grid 0: names vertex 7" },
+		{ "cut",
+		  HEAD "obj_info num_cols 2\nobj_info num_rows 1\nelement vertex 1\n" XYZ
+		       "element range_grid 2\n" GRID_ELEMENT "0 0 0\n1 0\n",
+		  "copy it again" },
+		{ "no-neighbours",
+		  HEAD "obj_info num_cols 2\nobj_info num_rows 1\nelement vertex 2\n" XYZ
+		       "element range_grid 2\n" GRID_ELEMENT "0 0 1\n1 0 1\n1 0\n1 1\n",
+		  "none of its points" },
+		{ "nan",
+		  HEAD "element vertex 1\n" XYZ "property float nx\nproperty float ny\n"
+		       "property float nz\nend_header\nnan 0 0 0 0 1\n",
+		  "none of its points" },
+	};
+	struct diagnostics diagnostics;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++)
+		if (read_text(cases[i].text, &diagnostics) != -EBADMSG ||
+		    !strstr(diagnostics.first.text, cases[i].says))
+			fail_msg("%s: '%s'", cases[i].name, diagnostics.first.text);
+}
+
+static void reads_clouds_with_normals_and_meshes(void **state)
+{
+	struct diagnostics diagnostics;
+	(void)state;
+
+	CHECK(read_text(HEAD "element vertex 2\n" XYZ "property float nx\nproperty float ny\n"
+			     "property float nz\nproperty float confidence\nend_header\n"
+			     "0 0 0 0 0 2 1\n1 0 0 0 0 2 0\n",
+			&diagnostics) == 0);
+	CHECK(read_text(HEAD "element vertex 3\n" XYZ "element face 1\n"
+			     "property list uchar int vertex_indices\nend_header\n"
+			     "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+			&diagnostics) == 0);
+}
+
+static void registrations_place_the_scans(void **state)
+{
+	struct diagnostics diagnostics = { 0 };
+	struct range_scan scan;
+	struct transform turn = { { { 0, -1, 0, 5 }, { 1, 0, 0, 0 }, { 0, 0, 1, 0 } } };
+	static const char text[] =
+		HEAD "element vertex 1\n" XYZ "property float nx\nproperty float ny\n"
+		     "property float nz\nend_header\n1 2 3 1 0 0\n";
+	char path[256];
+	(void)state;
+
+	scan_write(path, "one.ply", text, strlen(text));
+	CHECK(range_scan_read(&scan, path, &turn, RANGE_SIGHT_ORIGIN, &diagnostics) == 0);
+	CHECK(scan.points[0].at[0] == 3 && scan.points[0].at[1] == 1);
+	CHECK(scan.points[0].normal[1] == 1 && fabsf(scan.points[0].towards[0] - 0.534f) < 0.001f);
+	range_scan_finish(&scan);
+	scan_remove(path);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(finds_the_true_surface_without_and_with_noise),
+		cmocka_unit_test(keeps_colours),
+		cmocka_unit_test(is_open_or_watertight_as_asked),
+		cmocka_unit_test(depth_sets_the_number_of_cubes),
+		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
+		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
+		cmocka_unit_test(registrations_place_the_scans),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
