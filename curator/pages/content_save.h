@@ -10,9 +10,9 @@ struct cJSON;
 
 enum { CONTENT_PROBLEMS_MAX = 1000 };
 
-/* Lists what a build would say, faults and warnings, with texts instead of files. Lists of faces
- * and the pixels of pictures are not looked at. Negative errno: it cannot be found out; faults are
- * no error. *out is for diagnostics_finish. */
+/* Lists what a build would say, faults and warnings, with texts instead of files. Lists of faces,
+ * the pixels of pictures and the samples of sound are not looked at. Negative errno: it cannot be
+ * found out; faults are no error. *out is for diagnostics_finish. */
 must_check int content_check(const struct site *site, const struct info_text_instead *instead,
 			     uint32_t count, struct diagnostics *out);
 

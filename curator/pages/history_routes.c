@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "curator/pages/content_save.h"
+#include "curator/pages/field_history.h"
 #include "curator/pages/save_answer.h"
 #include "curator/store/documents_versions.h"
 #include "curator/store/text_compare.h"
@@ -133,6 +134,22 @@ static void get_difference(void *user, const struct api_request *request,
 	buffer_finish(&from);
 }
 
+/* Of a part's title, caption, reading and picture, each by itself. */
+static void get_fields(void *user, const struct api_request *request, struct api_response *response)
+{
+	struct diagnostics diagnostics = { 0 };
+	cJSON *json = cJSON_CreateObject();
+	int rc = field_history(cJSON_AddArrayToObject(json, "changes"), user,
+			       api_parameter(request, "id"), &diagnostics);
+
+	if (rc == 0) {
+		api_send_json(response, json);
+		return;
+	}
+	cJSON_Delete(json);
+	api_fail_with(response, rc, &diagnostics);
+}
+
 /* Goes back: a new version with the old text. */
 static void post_restore(void *user, const struct api_request *request,
 			 struct api_response *response)
@@ -178,6 +195,7 @@ struct api_routes history_routes(struct site *site)
 	static const struct api_route routes[] = {
 		{ API_GET, "/api/versions", ROLE_READER, 0, true, get_versions },
 		{ API_GET, "/api/version", ROLE_READER, 0, true, get_version },
+		{ API_GET, "/api/parts/{id}/history", ROLE_READER, 0, true, get_fields },
 		{ API_GET, "/api/difference", ROLE_READER, 0, true, get_difference },
 		{ API_POST, "/api/restore", ROLE_EDITOR, API_JSON_BYTES_MAX, true, post_restore },
 	};

@@ -35,6 +35,8 @@ static void add_part(cJSON *rows, const cJSON *part)
 	cJSON_AddBoolToObject(row, "without_page",
 			      cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(part, "page")));
 	cJSON_AddObjectToObject(row, "pages");
+	cJSON_AddObjectToObject(row, "spoken");
+	cJSON_AddObjectToObject(row, "words");
 	cJSON_AddItemToArray(rows, row);
 }
 
@@ -57,8 +59,12 @@ static cJSON *row_of(const cJSON *parts, const char *id, size_t bytes)
 	return NULL;
 }
 
+/* A page, its recording, or the words of that. */
 static void add_page(const struct lister *lister, const char *name, const char *tag)
 {
+	static const char *const kinds[][2] = { { ".html", "pages" },
+						{ ".opus", "spoken" },
+						{ ".vtt", "words" } };
 	const char *id = name + strlen("pages/"), *dot = strchr(id, '.');
 	const cJSON *row = dot ? row_of(lister->parts, id, (size_t)(dot - id)) : NULL;
 
@@ -66,9 +72,12 @@ static void add_page(const struct lister *lister, const char *name, const char *
 		const char *language = lister->content->languages[n];
 		const size_t bytes = strlen(language);
 
-		if (strncmp(dot + 1, language, bytes) == 0 && strcmp(dot + 1 + bytes, ".html") == 0)
-			cJSON_AddStringToObject(cJSON_GetObjectItemCaseSensitive(row, "pages"),
-						language, tag);
+		for (size_t k = 0; k < ARRAY_COUNT(kinds); k++)
+			if (strncmp(dot + 1, language, bytes) == 0 &&
+			    strcmp(dot + 1 + bytes, kinds[k][0]) == 0)
+				cJSON_AddStringToObject(
+					cJSON_GetObjectItemCaseSensitive(row, kinds[k][1]),
+					language, tag);
 	}
 }
 

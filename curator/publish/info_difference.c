@@ -53,6 +53,17 @@ static const struct {
 	  " FROM %.tour_stop_contents s WHERE s.tour_id = t.tour_id), '') AS value FROM %.tour t" },
 };
 
+/* What is spoken, and its words; not every database has these tables. */
+static const char sounds_query[] =
+	"SELECT p.name || '.' || l.code AS key, (SELECT d.title FROM %.information_contents d"
+	" JOIN %.assigned_information b USING(information_id) WHERE b.part_id = a.part_id"
+	" AND d.title IS NOT NULL ORDER BY d.language LIMIT 1) AS title, quote(s.hash)"
+	" || coalesce((SELECT group_concat(quote(begin_ms) || quote(end_ms) || quote(text)) FROM"
+	" %.spoken_cue q WHERE q.content_id = s.content_id), '') AS value FROM %.spoken s"
+	" JOIN %.information_contents c USING(content_id)"
+	" JOIN %.assigned_information a USING(information_id)"
+	" JOIN %.identified_part p USING(part_id) JOIN %.language l ON l.position = c.language";
+
 static void put_query(struct buffer *out, const char *query, const char *schema)
 {
 	for (; *query; query++)
@@ -96,7 +107,30 @@ static int add_rows(cJSON *json, const char *name, sqlite3 *db, const char *quer
 	return code == SQLITE_DONE ? 0 : -EBADMSG;
 }
 
-static int add_kind(cJSON *json, const char *name, const char *query, sqlite3 *db, bool has_before)
+/* A database without spoken texts has no tables of them; neither has one that is not there. */
+static bool has_sounds(sqlite3 *db, const char *schema)
+{
+	sqlite3_stmt *statement;
+	char query[128];
+	bool found = false;
+
+	snprintf(query, sizeof(query), "SELECT 1 FROM %s.sqlite_master WHERE name = 'spoken'",
+		 schema);
+	if (sqlite3_prepare_v2(db, query, -1, &statement, NULL) == SQLITE_OK)
+		found = sqlite3_step(statement) == SQLITE_ROW;
+	sqlite3_finalize(statement);
+	return found;
+}
+
+static void put_side(struct buffer *out, const char *query, const char *schema, bool is_there)
+{
+	put_query(out,
+		  is_there ? query : "SELECT NULL AS key, NULL AS title, NULL AS value WHERE 0",
+		  schema);
+}
+
+static int add_kind(cJSON *json, const char *name, const char *query, sqlite3 *db, bool has_now,
+		    bool has_before)
 {
 	struct buffer text;
 	int rc;
@@ -106,12 +140,9 @@ static int add_kind(cJSON *json, const char *name, const char *query, sqlite3 *d
 			       " coalesce(n.title, o.title, '') AS title,"
 			       " CASE WHEN o.key IS NULL THEN 'added' WHEN n.key IS NULL THEN"
 			       " 'removed' ELSE 'changed' END AS change FROM (");
-	put_query(&text, query, "main");
+	put_side(&text, query, "main", has_now);
 	buffer_put_text(&text, ") n FULL JOIN (");
-	if (has_before)
-		put_query(&text, query, "before");
-	else
-		buffer_put_text(&text, "SELECT NULL AS key, NULL AS title, NULL AS value WHERE 0");
+	put_side(&text, query, "before", has_before);
 	buffer_put_text(&text, ") o ON n.key = o.key WHERE n.value IS NOT o.value ORDER BY 1");
 	buffer_put_u8(&text, 0);
 	rc = text.error ? text.error : add_rows(json, name, db, (const char *)text.data);
@@ -119,19 +150,20 @@ static int add_kind(cJSON *json, const char *name, const char *query, sqlite3 *d
 	return rc;
 }
 
-static int add_picture_bytes(cJSON *json, sqlite3 *db, bool has_before)
+/* How large those files of a table are that are not known yet. */
+static int add_bytes(cJSON *json, const char *name, const char *table, sqlite3 *db, bool has_before)
 {
 	sqlite3_stmt *statement;
-	int code = sqlite3_prepare_v2(
-		db,
-		has_before ? "SELECT coalesce(sum(bytes), 0) FROM main.picture WHERE hash NOT IN"
-			     " (SELECT hash FROM before.picture)"
-			   : "SELECT coalesce(sum(bytes), 0) FROM main.picture",
-		-1, &statement, NULL);
+	char query[256];
+	int code, length = snprintf(query, sizeof(query),
+				    "SELECT coalesce(sum(bytes), 0) FROM main.%s", table);
 
+	if (has_before)
+		snprintf(query + length, sizeof(query) - (size_t)length,
+			 " WHERE hash NOT IN (SELECT hash FROM before.%s)", table);
+	code = sqlite3_prepare_v2(db, query, -1, &statement, NULL);
 	if (code == SQLITE_OK && sqlite3_step(statement) == SQLITE_ROW)
-		cJSON_AddNumberToObject(json, "picture_bytes",
-					(double)sqlite3_column_int64(statement, 0));
+		cJSON_AddNumberToObject(json, name, (double)sqlite3_column_int64(statement, 0));
 	else
 		code = SQLITE_ERROR;
 	sqlite3_finalize(statement);
@@ -183,13 +215,20 @@ static int open_both(sqlite3 **db, struct bytes now, struct bytes before)
 
 int info_difference(struct cJSON *json, struct bytes now, struct bytes before)
 {
+	const bool has_before = before.size > 0;
 	sqlite3 *db = NULL;
 	int rc = open_both(&db, now, before);
+	const bool now_sounds = rc == 0 && has_sounds(db, "main"),
+		   before_sounds = rc == 0 && has_before && has_sounds(db, "before");
 
 	for (unsigned n = 0; rc == 0 && n < ARRAY_COUNT(kinds); n++)
-		rc = add_kind(json, kinds[n].name, kinds[n].query, db, before.size > 0);
+		rc = add_kind(json, kinds[n].name, kinds[n].query, db, true, has_before);
 	if (rc == 0)
-		rc = add_picture_bytes(json, db, before.size > 0);
+		rc = add_kind(json, "sounds", sounds_query, db, now_sounds, before_sounds);
+	if (rc == 0)
+		rc = add_bytes(json, "picture_bytes", "picture", db, has_before);
+	if (rc == 0 && now_sounds)
+		rc = add_bytes(json, "sound_bytes", "spoken", db, before_sounds);
 	if (rc == 0)
 		rc = add_languages(json, db);
 	sqlite3_close(db);

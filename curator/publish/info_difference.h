@@ -10,10 +10,10 @@ struct cJSON;
 
 /* Adds to *json:
  *
- *   parts, cards, pages, pictures, tours   [{"key", "title", "change"}], change being added,
- * changed or removed; the key of a card or page is "PART.LANGUAGE" picture_bytes of pictures that
- * are added or changed languages                              [{"code", "titles", "pages"}]: how
- * many are missing
+ *   parts, cards, pages, sounds, pictures, tours   [{"key", "title", "change"}], change being
+ * added, changed or removed; the key of a card, page or sound is "PART.LANGUAGE" picture_bytes   of
+ * pictures that are added or changed sound_bytes     the same of spoken texts; missing if there are
+ * none languages       [{"code", "titles", "pages"}]: how many are missing
  *
  * before empty: there was no release. Both are images that gopura-content made. -EBADMSG: one is
  * not; -ENOMEM. */

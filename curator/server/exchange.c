@@ -19,7 +19,7 @@ static const uint64_t uploads_bytes_max = 4 * API_UPLOAD_BYTES_MAX; /* of all to
 /* What a browser gets is asked for by the page itself, and by nobody else. */
 static const char page_policy[] =
 	"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
-	"connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+	"media-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 /* What handlers send is data: a picture that somebody uploaded runs nothing. */
 static const char data_policy[] = "default-src 'none'; frame-ancestors 'none'; sandbox";
 

@@ -17,6 +17,7 @@
 #include "curator/pages/page_routes.h"
 #include "curator/pages/picture_routes.h"
 #include "curator/pages/preview_routes.h"
+#include "curator/pages/spoken_routes.h"
 #include "curator/pages/tour_routes.h"
 #include "curator/publish/publish_routes.h"
 #include "curator/server/exchange.h"
@@ -41,7 +42,7 @@ struct web_server {
 	struct access access;
 	struct sign_in_place sign_in;
 	struct preview *preview; /* owned */
-	struct api_routes tables[9];
+	struct api_routes tables[10];
 	struct publish_place publish;
 	struct workers *workers; /* owned */
 	struct exchange_env env;
@@ -245,6 +246,7 @@ static void set_access(struct web_server *server, const struct web_server_option
 	server->tables[6] = picture_routes(server->site);
 	server->tables[7] = preview_routes(server->preview);
 	server->tables[8] = tour_routes(server->site);
+	server->tables[9] = spoken_routes(server->site);
 }
 
 /* Those that libwebsockets knows cannot be asked for by name. */

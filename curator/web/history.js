@@ -112,12 +112,53 @@ function heading(text) {
   return Object.assign(document.createElement("h2"), { textContent: text });
 }
 
-// Of a page, which can go back, and of what parts.json has of all parts, which cannot: others' texts are in it too.
-export async function showHistory(document_, restored) {
+const FIELD_WORDS = { title: "Title", caption: "Caption", reading: "Reading", thumbnail: "Picture" };
+
+// One text of the card at one time: what was changed of it, and going back to it. now: the text as it is saved.
+function fieldRow(change, now, set) {
+  const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small"), box = document.createElement("div");
+  button.type = "button";
+  button.setAttribute("aria-expanded", "false");
+  button.textContent = `${FIELD_WORDS[change.field]}: ${change.to || "removed"}`;
+  small.textContent = `${change.author || "Outside this program"}, ${when(change.time)}${change.to === now ? " (now)" : ""}`;
+  button.append(small);
+  box.className = "difference";
+  box.hidden = true;
+  const p = document.createElement("p");
+  for (const [sign, word] of compare(change.from.split(/(\s+)/).filter(Boolean), change.to.split(/(\s+)/).filter(Boolean)))
+    p.append(sign === " " ? word : Object.assign(document.createElement(sign === "+" ? "ins" : "del"), { textContent: word }));
+  box.append(p);
+  if (change.to !== now && may("editor")) {
+    const back = document.createElement("button");
+    back.type = "button";
+    back.textContent = change.to ? "Go back to this text" : "Remove it again";
+    back.addEventListener("click", () => set({ field: change.field, language: change.language, from: now, to: change.to }));
+    box.append(back);
+  }
+  button.addEventListener("click", () => {
+    box.hidden = !box.hidden;
+    button.setAttribute("aria-expanded", String(!box.hidden));
+  });
+  item.append(button, box);
+  return item;
+}
+
+async function cardHistory(part, language, set) {
+  const { changes } = await ask("GET", `/api/parts/${part.id}/history`), list = document.createElement("ul");
+  const here = changes.filter(change => !change.language || change.language === language);
+  const nowOf = change => (change.language ? part[change.field]?.[change.language] : part[change.field]) || "";
+  list.className = "versions";
+  list.append(...here.map(change => fieldRow(change, nowOf(change), set)));
+  return here.length ? list : "Nothing has been written yet.";
+}
+
+// Of a page, of the texts on the card, and of what parts.json has of all parts, which cannot go back: others' texts are in
+// it too. set(change) saves one text, as POST /api/parts/ID/texts takes it.
+export async function showHistory(part, language, document_, restored, set) {
   panel.textContent = "Loading …";
   try {
-    const page = await versionsOf(document_, restored), parts = await versionsOf("parts.json", null);
-    panel.replaceChildren(heading("This page"), page, heading("Titles, captions, credits and order of all parts"), parts);
+    const page = await versionsOf(document_, restored), card = await cardHistory(part, language, set), parts = await versionsOf("parts.json", null);
+    panel.replaceChildren(heading("This page"), page, heading("Title, caption, reading and picture"), card, heading("All parts"), parts);
   } catch (failure) {
     panel.textContent = failure.message;
   }

@@ -9,6 +9,7 @@ import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
 import { makeFigure, pickPicture, readFigure, sendPicture, setPictures } from "./pictures.js";
 import { showPreview } from "./preview.js";
+import { sendSound, showSound, soundKind } from "./sound.js";
 
 const byId = id => document.getElementById(id);
 const FIELDS = ["title", "caption", "reading"];
@@ -216,12 +217,31 @@ async function setField(change) {
   try {
     await ask("POST", `/api/parts/${part.id}/texts`, { changes: [change] });
     await loadInformation();
+    if (change.language === language && FIELDS.includes(change.field)) {
+      loaded[change.field] = byId(change.field).value = change.to;
+      edited();
+    }
     showPanel();
   } catch (failure) {
     if (failure.status === 409) tell(`Somebody else has changed this meanwhile, to “${failure.answer.theirs}”.`);
     else fail(failure);
     await loadInformation();
   }
+}
+
+async function changeSound(work) {
+  tell("");
+  byId("state").textContent = "Sending …";
+  try {
+    await work();
+    await loadInformation();
+    byId("state").textContent = "Saved";
+  } catch (failure) {
+    byId("state").textContent = "";
+    fail(failure);
+    if (failure.status === 412) await loadInformation();
+  }
+  showPanel();
 }
 
 async function remove() {
@@ -246,7 +266,8 @@ function showPanel() {
     byId(tab.getAttribute("aria-controls")).hidden = !on;
   }
   if (!part) return;
-  if (panel === "history") showHistory(pageName(), restore);
+  if (panel === "history") showHistory(part, language, pageName(), restore, setField);
+  if (panel === "sound") showSound(part, language, changeSound);
   if (panel === "about") showAbout(part, information.credits, language, setField, remove);
   if (panel === "preview") showPreview(part, language, dirty ? pageText() : null);
 }
@@ -256,6 +277,10 @@ function showPanel() {
 async function takeFiles(files) {
   for (const file of files) {
     try {
+      if (soundKind(file)) {
+        await changeSound(() => sendSound(soundKind(file), part, language, file));
+        continue;
+      }
       if (/^image\//.test(file.type)) {
         byId("state").textContent = `Sending ${file.name} …`;
         const name = await sendPicture(file);
@@ -266,12 +291,12 @@ async function takeFiles(files) {
         const text = await file.text(), box = document.createElement("div");
         for (const lines of text.split(/\n\s*\n/)) box.append(Object.assign(document.createElement("p"), { textContent: lines }));
         insertBlocks(clean(box.innerHTML));
-      } else tell(`${file.name}: pictures (JPEG, PNG, WebP), texts and web pages can be taken.`);
+      } else tell(`${file.name}: pictures (JPEG, PNG, WebP), texts, web pages and speech (Opus, WebVTT) can be taken.`);
     } catch (failure) {
       tell(`${file.name}: ${failure.message}`);
     }
   }
-  setDirty(true);
+  edited();
 }
 
 function takeDrop(data) {

@@ -22,14 +22,14 @@ function bytes(n) {
 
 // ---- what would change
 
-const KINDS = [["parts", "Part"], ["cards", "Card"], ["pages", "Page"], ["pictures", "Picture"], ["tours", "Tour"]];
+const KINDS = [["parts", "Part"], ["cards", "Card"], ["pages", "Page"], ["sounds", "Sound"], ["pictures", "Picture"], ["tours", "Tour"]];
 const SIGNS = { added: "+", changed: "~", removed: "−" };
 const isDifferent = () => changes && !changes.errors.length && (changes.bytes > 0 || changes.model === "new" || !changes.release);
 
 function changeRow(kind, row) {
   const item = element("li", "", `change ${row.change}`), sign = element("span", SIGNS[row.change], "sign");
   sign.setAttribute("aria-hidden", "true");
-  const language = kind === "cards" || kind === "pages" ? row.key.slice(row.key.lastIndexOf(".") + 1) : "";
+  const language = ["cards", "pages", "sounds"].includes(kind) ? row.key.slice(row.key.lastIndexOf(".") + 1) : "";
   const what = element("span", `${row.title || row.key}`, "what");
   const label = KINDS.find(one => one[0] === kind)[1];
   item.append(sign, what, element("small", `${label}${language ? ` · ${language}` : ""} ${row.change}`));
@@ -64,6 +64,7 @@ function changeSections() {
   if (rows.length) made.push(section(plural(rows.length, "change"), listOf(rows, "changes")));
   else made.push(element("p", isDifferent() ? "Credits, order or settings have changed." : "Nothing has changed since the last release.", "quiet"));
   if (isDifferent()) made.push(element("p", `Terminals will fetch about ${bytes(changes.bytes)} for texts and pictures.`, "quiet"));
+  if (changes.sound_bytes) made.push(element("p", `And ${bytes(changes.sound_bytes)} of speech, when somebody listens for the first time.`, "quiet"));
   const missing = missingRows();
   if (missing.length) made.push(section("Not translated yet", listOf(missing, "plain"), false));
   return made;

@@ -7,8 +7,6 @@
 #include "base/diagnostics.h"
 #include "storage/info_spoken.h"
 
-enum { CUES_FILE_BYTES_MAX = 256 << 10 };
-
 struct cues {
 	struct info_cue *all; /* owned, and so are their texts */
 	uint32_t count, room;

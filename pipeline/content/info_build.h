@@ -21,8 +21,8 @@ struct info_faces {
 /* Works on one list. -EINVAL: diagnostics says what is wrong and how to correct it. */
 typedef int info_faces_call(void *data, struct info_faces *faces, struct diagnostics *diagnostics);
 
-/* A text that is taken instead of a file's, as if it had been saved: parts.json, tours.json or a
- * page. data NULL: as if there were no such file. */
+/* A text that is taken instead of a file's, as if it had been saved: parts.json, tours.json, a
+ * page, or what is spoken on it. data NULL: as if there were no such file. */
 struct info_text_instead {
 	const char *name; /* relative to the folder */
 	struct bytes text;
@@ -35,8 +35,9 @@ struct info_build_options {
 	unsigned tools;               /* bits of enum info_tool */
 	const struct info_text_instead *instead;
 	uint32_t instead_count;
-	/* Looks at no more than the first bytes of pictures, for a check while somebody waits.
-	 * Their size is then 1 by 1 and their hash 0, so nothing can be published. */
+	/* Looks at no more than the first bytes of pictures, and does not decode sound, for a check
+	 * while somebody waits. Pictures' size is then 1 by 1 and their hash 0, so nothing can be
+	 * published. */
 	bool skims_pictures;
 	/* Gets every fault and every warning; files are relative to the folder. Borrowed. */
 	struct diagnostics *diagnostics;

@@ -1,16 +1,14 @@
-/* libopusfile decides what is Ogg Opus: the file is decoded to its end, so that a terminal finds no
- * fault in it. */
+/* Finds a page's recording and its words, and judges them. */
 #include "pipeline/content/spoken_text.h"
 
 #include <errno.h>
 #include <limits.h>
-#include <opusfile.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum { RATE_HZ = 48000, CHANNELS_MAX = 2, PCM_SAMPLES = 5760 * CHANNELS_MAX };
+#include "pipeline/content/spoken_sound.h"
 
 static void name_file(const struct draft *draft, const struct draft_part *part, uint32_t language,
 		      const char *ending, char file[DRAFT_SPOKEN_NAME_BYTES])
@@ -29,10 +27,10 @@ static int read_file(struct draft *draft, const char *file, uint32_t bytes_max,
 
 	buffer_init(bytes, bytes_max);
 	if (draft_path(draft, path, sizeof(path), file)) {
-		if (lstat(path, &status) < 0)
-			rc = -errno;
+		if (lstat(path, &status) == 0 && !S_ISREG(status.st_mode))
+			rc = -ELOOP;
 		else
-			rc = S_ISREG(status.st_mode) ? buffer_read_file(bytes, path) : -ELOOP;
+			rc = draft_read_text(draft, file, bytes);
 	}
 	if (rc == 0 || rc == -ENOENT || rc == -ENOMEM)
 		return rc;
@@ -49,66 +47,20 @@ static int read_file(struct draft *draft, const char *file, uint32_t bytes_max,
 	return -EINVAL;
 }
 
-/* Decodes everything. Returns the number of samples of a channel, or negative. */
-static int64_t decode(OggOpusFile *opus)
-{
-	opus_int16 pcm[PCM_SAMPLES];
-	int64_t samples = 0;
-	int link = -1, got;
-
-	while ((got = op_read(opus, pcm, PCM_SAMPLES, &link)) > 0) {
-		if (op_channel_count(opus, link) > CHANNELS_MAX)
-			return -1;
-		samples += got;
-		if (samples > (int64_t)RATE_HZ / 1000 * INFO_SPOKEN_MS_MAX)
-			return samples;
-	}
-	return got < 0 ? -1 : samples;
-}
-
-/* Whether the last page of Ogg ends the file and its stream: decoding does not miss pages that were
- * cut off. */
-static bool has_end(struct bytes bytes)
-{
-	enum { HEAD_BYTES = 27, FLAGS_AT = 5, SEGMENTS_AT = 26, LAST_PAGE = 4 };
-
-	for (size_t at = bytes.size; at-- > 0;) {
-		const uint8_t *page = bytes.data + at;
-		size_t size = HEAD_BYTES;
-
-		if (bytes.size - at < HEAD_BYTES || memcmp(page, "OggS", 4) != 0)
-			continue;
-		if (bytes.size - at < size + page[SEGMENTS_AT])
-			return false;
-		for (unsigned n = 0; n < page[SEGMENTS_AT]; n++)
-			size += 1 + page[HEAD_BYTES + n];
-		return size == bytes.size - at && page[FLAGS_AT] & LAST_PAGE;
-	}
-	return false;
-}
-
 /* Returns the length in milliseconds, 0: the file is not good. */
 static uint32_t measure(struct draft *draft, const char *file, struct bytes bytes)
 {
-	int error;
-	OggOpusFile *opus = op_open_memory(bytes.data, bytes.size, &error);
-	const int64_t samples = opus ? decode(opus) : -1, ms = samples * 1000 / RATE_HZ;
-	/* Every sample of a complete file is there: the last page says how many it has. */
-	const bool is_whole = opus && op_pcm_total(opus, -1) == samples && has_end(bytes);
+	uint32_t duration_ms;
+	int rc = spoken_sound_measure(bytes, draft->options->skims_pictures, &duration_ms);
 
-	op_free(opus);
-	if (ms > INFO_SPOKEN_MS_MAX) {
+	if (rc == -EFBIG)
 		diagnostics_add(draft->diagnostics, -EINVAL, file, 0,
 				"is longer than ten minutes: divide the text");
-		return 0;
-	}
-	if (!is_whole || ms == 0) {
+	else if (rc < 0)
 		diagnostics_add(draft->diagnostics, -EINVAL, file, 0,
 				"is not a complete Ogg Opus file with one or two channels: encode "
 				"it with 'opusenc --bitrate 24'");
-		return 0;
-	}
-	return (uint32_t)ms;
+	return duration_ms;
 }
 
 static int read_sound(struct draft *draft, struct draft_spoken *spoken)

@@ -145,6 +145,52 @@ def check_pictures(ana):
     assert save(ana, PAGE, html.replace("</body>", figure + "\n</body>"), tag)[0] == 200
 
 
+def check_spoken(ana):
+    """A recording and its words; what a terminal would not play is refused with the remedy."""
+    opus = open("demo/content/pages/central-tower.en.opus", "rb").read()
+    ask = lambda method, kind, data, tag="", name="lions.en": ana.ask(method, f"/api/{kind}/{name}", data, Content_Type="application/octet-stream",
+        **({"If_Match": f'"{tag}"'} if tag else {"If_None_Match": "*"}))
+    told = ask("PUT", "spoken", opus[:-2000])
+    assert told[0] == 422 and "opusenc" in told[2]["message"], told
+    for wrong in (b"", b"no sound", png(4, 4, (1, 2, 3)), opus.replace(b"OpusHead", b"OpusHeap")):
+        assert ask("PUT", "spoken", wrong)[0] == 422
+    assert ask("PUT", "spoken", opus, name="lions.xx")[0] == 404
+    assert ana.ask("GET", "/api/spoken/lions.en")[0] == 404
+    status, _, answer = ask("PUT", "spoken", opus)
+    assert status == 200, answer
+    assert ask("PUT", "spoken", opus[:-1])[0] == 422
+    assert ask("PUT", "spoken", opus)[0] == 412, "over another recording"
+    status, headers, data = ana.ask("GET", "/api/spoken/lions.en")
+    assert (status, headers["content-type"], data) == (200, "audio/ogg", opus)
+    assert ask("PUT", "words", b"00:00.000 --> 00:02.000\nNo head")[0] == 422
+    late = ask("PUT", "words", b"WEBVTT\n\n05:00.000 --> 05:02.000\nToo late\n")
+    assert late[0] == 422 and "another recording" in late[2]["message"], late
+    assert ask("PUT", "words", b"WEBVTT\n\n00:00.000 --> 00:02.000\nLions\n")[0] == 200
+    part = part_of(ana, "lions")
+    assert part["spoken"] == {"en": answer["tag"]} and list(part["words"]) == ["en"], part
+    assert ask("DELETE", "spoken", None, answer["tag"])[0] == 200
+    part = part_of(ana, "lions")
+    assert part["spoken"] == part["words"] == {}, "the words go with their recording"
+    assert ask("PUT", "spoken", opus)[0] == 200
+    versions = ana.ask("GET", "/api/versions?document=pages/lions.en.opus")[2]["versions"]
+    assert [(v["what"], v["removed"]) for v in versions] == [("recording of lions in en", False), ("recording of lions in en, removed", True), ("recording of lions in en", False)]
+
+
+def check_fields(ana):
+    """Each text of a card has a history of its own, and goes back by itself."""
+    rows = lambda: [row for row in ana.ask("GET", "/api/parts/lions/history")[2]["changes"] if (row["field"], row["language"]) == ("caption", "en")]
+    first = part_of(ana, "lions")["caption"]["en"]
+    for before, after in ((first, "One."), ("One.", "Two.")):
+        assert change(ana, "lions", field="caption", language="en", **{"from": before}, to=after)[0] == 200
+    assert change(ana, "lions", field="title", language="km", **{"from": part_of(ana, "lions")["title"]["km"]}, to="Another title")[0] == 200
+    assert [(row["from"], row["to"], row["author"]) for row in rows()[:2]] == [("One.", "Two.", "ana"), (first, "One.", "ana")]
+    assert rows()[-1]["from"] == "" and rows()[-1]["author"] == "", "the text that was there at first"
+    assert change(ana, "lions", field="caption", language="en", **{"from": "Two."}, to=rows()[1]["from"])[0] == 200
+    part = part_of(ana, "lions")
+    assert part["caption"]["en"] == first and part["title"]["km"] == "Another title"
+    assert ana.ask("GET", "/api/parts/nobody/history")[2] == {"changes": []}
+
+
 def check_preview(ana):
     ask = lambda **body: ana.ask("POST", "/api/preview", json.dumps(body))
     pictures = []
@@ -168,6 +214,7 @@ def check_roles(rolf):
     assert change(rolf, "lions", field="title", language="en", **{"from": ""}, to="x")[0] == 403
     assert rolf.ask("DELETE", "/api/parts/lions")[0] == 403
     assert rolf.ask("POST", "/api/pictures?name=x", png(4, 4, (1, 2, 3)))[0] == 403
+    assert rolf.ask("PUT", "/api/spoken/lions.fr", b"x", If_None_Match="*")[0] == 403
 
 
 def keep_saving(port, counter):
@@ -195,6 +242,8 @@ def main():
     check_pages(ana, petra)
     check_history(ana)
     check_pictures(ana)
+    check_spoken(ana)
+    check_fields(ana)
     check_preview(ana)
     check_roles(rolf)
 

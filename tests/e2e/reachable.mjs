@@ -129,13 +129,15 @@ async function write() {
   await tabTo("#tab-preview");
   await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 3`, "three previews");
   await judge("write");
-  for (const panel of ["history", "about"]) {
+  for (const panel of ["history", "sound", "about"]) {
     await press("ArrowRight");
     await browser.until(`!document.querySelector("#${panel}").hidden && document.querySelector("#${panel}").children.length > 1`, panel);
     if (panel === "history") {
-      await tabTo("#history .versions button");
-      await press("Enter");
-      await browser.until(`document.querySelector("#history .difference")`, "a difference");
+      for (const list of [1, 2]) { // of the page, and of its card
+        await tabTo(`#history .versions:nth-of-type(${list}) button`);
+        await press("Enter");
+      }
+      await browser.until(`[...document.querySelectorAll("#history .difference")].filter(one => one.checkVisibility()).length === 2`, "two differences");
     }
     await judge(panel);
     if (panel === "history") await tabTo("#tab-history", SHIFT);

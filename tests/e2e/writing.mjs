@@ -58,6 +58,25 @@ async function changesCaption(browser) {
   assert.match(await browser.evaluate(`document.querySelector("#history li").textContent`), /^ana/);
 }
 
+// A recording is chosen as with the file dialog; the caption goes back to an older text by itself.
+async function speaksAndGoesBack(browser) {
+  await browser.click("#tab-sound");
+  await browser.until(`document.querySelector("#sound input")`, "the panel");
+  const { root } = await browser.send("DOM.getDocument"), { nodeId } = await browser.send("DOM.querySelector", { nodeId: root.nodeId, selector: "#sound input" });
+  await browser.send("DOM.setFileInputFiles", { nodeId, files: [`${process.cwd()}/demo/content/pages/central-tower.en.opus`] });
+  await browser.until(`document.querySelector("#sound audio")?.duration > 20`, "the recording");
+  await browser.picture(`${folder}/sound.png`);
+  const before = await browser.evaluate(`fetch("/api/parts/lions/history").then(answer => answer.json()).then(all => all.changes[0])`);
+  assert.equal(before.to, "A caption from the browser.");
+  await browser.click("#tab-history");
+  await browser.until(`document.querySelectorAll("#history .versions").length === 3`, "the history");
+  await browser.evaluate(`[...document.querySelectorAll("#history .versions:nth-of-type(2) > li > button")].filter(one => one.textContent.startsWith("Caption")).forEach(one => one.click())`);
+  await browser.picture(`${folder}/history.png`);
+  await browser.click("#history .versions:nth-of-type(2) .difference button");
+  await browser.until(`document.querySelector("#caption").value === ${JSON.stringify(before.from)}`, "the older caption");
+  assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true, "it is saved");
+}
+
 async function meets(ana, petra) {
   await open(petra, "lions.en");
   await caret(petra, 0);
@@ -92,6 +111,7 @@ try {
   await writes(ana);
   await pastes(ana);
   await changesCaption(ana);
+  await speaksAndGoesBack(ana);
   await meets(ana, petra);
   await previews(ana);
   await ana.picture(`${folder}/writing.png`);

@@ -100,6 +100,53 @@ static void a_changed_page_a_new_part_and_one_that_is_gone_are_told(void **state
 	info_built_finish(&now);
 }
 
+static void read_recording(struct buffer *file)
+{
+	buffer_init(file, 1 << 20);
+	CHECK(buffer_read_file(file, "demo/content/pages/central-tower.en.opus") == 0);
+}
+
+static void a_spoken_text_is_told_with_its_words_and_bytes(void **state)
+{
+	static const char *const words[] = { "Tower", "A tower" };
+	struct info_built silent, spoken[2];
+	struct buffer file;
+	cJSON *json;
+
+	(void)state;
+	CHECK(build(&silent) == 0);
+	read_recording(&file);
+	write_file("pages/tower.en.opus", file.data, file.size);
+	for (unsigned n = 0; n < 2; n++) {
+		char text[64];
+
+		snprintf(text, sizeof(text), "WEBVTT\n\n00:00.000 --> 00:02.000\n%s\n", words[n]);
+		write_text("pages/tower.en.vtt", text);
+		CHECK(build(&spoken[n]) == 0);
+	}
+	json = difference_of(buffer_bytes(&spoken[0].database), buffer_bytes(&silent.database));
+	CHECK(strcmp(change_of(json, "sounds", "tower.en"), "added") == 0);
+	CHECK(count(json, "sounds") == 1 && count(json, "pages") == 0);
+	CHECK(cJSON_GetObjectItem(json, "sound_bytes")->valueint == (int)file.size);
+	cJSON_Delete(json);
+	/* Other words, the same recording. */
+	json = difference_of(buffer_bytes(&spoken[1].database), buffer_bytes(&spoken[0].database));
+	CHECK(strcmp(change_of(json, "sounds", "tower.en"), "changed") == 0);
+	CHECK(cJSON_GetObjectItem(json, "sound_bytes")->valueint == 0);
+	cJSON_Delete(json);
+	json = difference_of(buffer_bytes(&silent.database), buffer_bytes(&spoken[0].database));
+	CHECK(strcmp(change_of(json, "sounds", "tower.en"), "removed") == 0);
+	CHECK(!cJSON_GetObjectItem(json, "sound_bytes"));
+	cJSON_Delete(json);
+	json = difference_of(buffer_bytes(&spoken[0].database), (struct bytes){ 0 });
+	CHECK(strcmp(change_of(json, "sounds", "tower.en"), "added") == 0);
+	cJSON_Delete(json);
+	buffer_finish(&file);
+	info_built_finish(&silent);
+	info_built_finish(&spoken[0]);
+	info_built_finish(&spoken[1]);
+}
+
 static void what_is_no_database_is_refused(void **state)
 {
 	static const uint8_t nonsense[512] = "SQLite format 4";
@@ -137,6 +184,8 @@ int main(void)
 						tear_down),
 		cmocka_unit_test_setup_teardown(
 			a_changed_page_a_new_part_and_one_that_is_gone_are_told, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(a_spoken_text_is_told_with_its_words_and_bytes,
+						set_up, tear_down),
 		cmocka_unit_test(what_is_no_database_is_refused),
 		cmocka_unit_test(pictures_without_a_description_are_named),
 	};
