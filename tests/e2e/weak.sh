@@ -1,7 +1,9 @@
 #!/bin/bash
 # Weak boards: the kiosk's settled pictures of the demo temple with 32 MiB of textures, on a driver that lacks what weak
-# boards lack (tests/tools/weak_gl.c), each limit alone and all together. No call is rejected, every view settles, and
-# the pictures stay above a minimum quality.
+# boards lack (tests/tools/weak_gl.c), all of it together. No call is rejected, every view settles, and the pictures stay
+# above a minimum quality.
+#
+#   LIMITS="size units mediump rgba8 index depth24"  of these each alone as well
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -50,16 +52,17 @@ draws() {
 	echo "$name: $(cat "$run.truth.json") $(cat "$run.json")"
 }
 draws strong ''
-for limit in size units mediump rgba8 index depth24 all; do
+for limit in ${LIMITS:-} all; do
 	draws "$limit" "$limit"
 done
 # At 32 MiB which faces find room depends on what came first: the same board twice differs by 2 dB.
-python3 - "$work" <<'P'
+# shellcheck disable=SC2086 # names
+python3 - "$work" strong ${LIMITS:-} all <<'P'
 import json
 import sys
 
 load = lambda name: json.load(open(f"{sys.argv[1]}/{name}.json"))
-for name in ["strong", "size", "units", "mediump", "rgba8", "index", "depth24", "all"]:
+for name in sys.argv[2:]:
     found, held = load(name + ".truth"), load(name)
     assert found["psnr_db"] >= 24.5, f"{name}: mean {found['psnr_db']} dB"
     assert found["psnr_worst5_db"] >= 21.5, f"{name}: worst {found['psnr_worst5_db']} dB"
@@ -83,7 +86,7 @@ for _ in 1 2 3; do
 	one=$(little '' "$lumigraph") # the rest is a unit test
 	strong=$(printf '%s\n' "$strong" "$one" | sort -n | tail -n 1)
 done
-for limit in size mediump all; do
+for limit in ${LIMITS:+size mediump} all; do
 	held=$(little "$limit")
 	for _ in 2 3; do
 		awk "BEGIN { exit !($held >= $strong - 1) }" || held=$(little "$limit" "$lumigraph")

@@ -20,13 +20,14 @@ may_include() { # its answer is in $answer: a subshell for each of thousands of 
 	case $1 in
 	base) ;;
 	format | board | input | sound | health | system) answer="base" ;;
+	tuf) answer="base" ;;
 	geometry | ui) answer="base format" ;;
 	render | storage) answer="base format geometry" ;;
 	net) answer="base format storage" ;;
 	app) answer="base format geometry board system render ui input sound storage net" ;;
 	pipeline) answer="base format geometry render storage" ;;
 	curator) answer="base format geometry render ui storage pipeline" ;;
-	tests) answer="base format geometry board system render ui input sound storage net app pipeline curator health" ;;
+	tests) answer="base format tuf geometry board system render ui input sound storage net app pipeline curator health" ;;
 	esac
 }
 # The same for the rooms of a folder: a room sees those that are named here; the folder's own files see every room.

@@ -1,0 +1,12 @@
+#!/bin/bash
+# The Update Framework's own conformance suite against tuf/workflow.h, which tests/tools/tuf_client drives: 108 repositories
+# honest and hostile, two of them recorded from the field.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+suite=../shared/conformance/tuf work=build/e2e/tuf
+[ -d "$suite" ] || skip "no $suite beside this folder: the suite of the TUF project is not part of ours"
+mkdir -p "$work"
+sh "$suite/run.sh" "$PWD/build/tests/tools/tuf_client" >"$work/log" 2>&1 || { tail -n 40 "$work/log"; fail "see $work/log"; }
+tail -n 1 "$work/log"
+grep -q '^108 passed' "$work/log" || fail "not all of 108 tests ran"

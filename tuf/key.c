@@ -1,0 +1,136 @@
+/* ed25519 by libsodium, the others by OpenSSL. */
+#include "tuf/key.h"
+
+#include <cjson/cJSON.h>
+#include <openssl/bio.h>
+#include <openssl/err.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/rsa.h>
+#include <sodium.h>
+#include <string.h>
+
+enum {
+	SIGNATURE_BYTES_MAX = 1024, /* of RSA with 8192 bits */
+	RSA_BITS_LEAST = 2048,
+	PUBLIC_CHARS_MAX = 4096,
+};
+
+struct signature {
+	uint8_t bytes[SIGNATURE_BYTES_MAX];
+	size_t size;
+};
+
+static const char *text(const cJSON *object, const char *name)
+{
+	return cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, name));
+}
+
+static bool read_hex(uint8_t *out, size_t room, size_t *size, const char *hex)
+{
+	return sodium_hex2bin(out, room, hex, strlen(hex), NULL, size, NULL) == 0;
+}
+
+/* ---- ed25519 */
+
+static bool signed_by_ed25519(const char *public, struct bytes message,
+			      const struct signature *signature, struct tuf_key_name *name)
+{
+	uint8_t key[crypto_sign_PUBLICKEYBYTES];
+	size_t size;
+
+	if (!read_hex(key, sizeof(key), &size, public) || size != sizeof(key))
+		return false;
+	crypto_hash_sha256(name->sha256, key, sizeof(key));
+	return signature->size == crypto_sign_BYTES &&
+	       crypto_sign_verify_detached(signature->bytes, message.data, message.size, key) == 0;
+}
+
+/* ---- ECDSA and RSA */
+
+static EVP_PKEY *read_pem(const char *public)
+{
+	BIO *bio = BIO_new_mem_buf(public, -1);
+	EVP_PKEY *key = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
+
+	BIO_free(bio);
+	return key;
+}
+
+static bool is_p256(EVP_PKEY *key)
+{
+	char group[32];
+
+	return EVP_PKEY_get_base_id(key) == EVP_PKEY_EC &&
+	       EVP_PKEY_get_group_name(key, group, sizeof(group), NULL) == 1 &&
+	       strcmp(group, "prime256v1") == 0;
+}
+
+static bool is_rsa(EVP_PKEY *key)
+{
+	return EVP_PKEY_get_base_id(key) == EVP_PKEY_RSA &&
+	       EVP_PKEY_get_bits(key) >= RSA_BITS_LEAST;
+}
+
+static bool name_key(EVP_PKEY *key, struct tuf_key_name *name)
+{
+	unsigned char *der = NULL;
+	const int size = i2d_PUBKEY(key, &der);
+
+	if (size > 0)
+		crypto_hash_sha256(name->sha256, der, (unsigned long long)size);
+	OPENSSL_free(der);
+	return size > 0;
+}
+
+static bool verify(EVP_PKEY *key, bool pss, struct bytes message, const struct signature *signature)
+{
+	EVP_MD_CTX *context = EVP_MD_CTX_new();
+	EVP_PKEY_CTX *padding = NULL;
+	bool ok = context && EVP_DigestVerifyInit(context, &padding, EVP_sha256(), NULL, key) == 1;
+
+	if (ok && pss)
+		ok = EVP_PKEY_CTX_set_rsa_padding(padding, RSA_PKCS1_PSS_PADDING) == 1 &&
+		     EVP_PKEY_CTX_set_rsa_pss_saltlen(padding, RSA_PSS_SALTLEN_AUTO) == 1;
+	ok = ok && EVP_DigestVerify(context, signature->bytes, signature->size, message.data,
+				    message.size) == 1;
+	EVP_MD_CTX_free(context);
+	return ok;
+}
+
+static bool signed_by_pem(const char *public, bool pss, struct bytes message,
+			  const struct signature *signature, struct tuf_key_name *name)
+{
+	EVP_PKEY *key = read_pem(public);
+	const bool ok = key && (pss ? is_rsa(key) : is_p256(key)) && name_key(key, name) &&
+			verify(key, pss, message, signature);
+
+	EVP_PKEY_free(key);
+	ERR_clear_error();
+	return ok;
+}
+
+/* ---- */
+
+bool tuf_key_signed(const cJSON *key, struct bytes message, const char *signature,
+		    struct tuf_key_name *name)
+{
+	const char *type = text(key, "keytype"), *scheme = text(key, "scheme");
+	const char *public = text(cJSON_GetObjectItemCaseSensitive(key, "keyval"), "public");
+	struct signature read;
+
+	if (!type || !scheme || !public || strlen(public) > PUBLIC_CHARS_MAX ||
+	    !read_hex(read.bytes, sizeof(read.bytes), &read.size, signature))
+		return false;
+	if (strcmp(scheme, "ed25519") == 0)
+		return strcmp(type, "ed25519") == 0 &&
+		       signed_by_ed25519(public, message, &read, name);
+	if (strcmp(scheme, "ecdsa-sha2-nistp256") == 0)
+		/* older files give the scheme as the type, too */
+		return (strcmp(type, "ecdsa") == 0 || strcmp(type, scheme) == 0) &&
+		       signed_by_pem(public, false, message, &read, name);
+	if (strcmp(scheme, "rsassa-pss-sha256") == 0)
+		return strcmp(type, "rsa") == 0 &&
+		       signed_by_pem(public, true, message, &read, name);
+	return false;
+}
