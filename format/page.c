@@ -22,7 +22,7 @@ void page_encode(struct buffer *out, const struct page *page)
 	uint64_t size = PAGE_HEADER_BYTES + (uint64_t)page->child_count * PAGE_CHILD_BYTES +
 			page->payload.size;
 
-	assert(page->kind >= PAGE_ROOT && page->kind <= PAGE_LABELS);
+	assert(page->kind >= PAGE_ROOT && page->kind < PAGE_KINDS);
 	if (size > PAGE_BYTES_MAX) {
 		out->error = out->error ? out->error : -EFBIG;
 		return;
@@ -87,7 +87,7 @@ int page_decode(struct page *out, struct bytes object)
 	page.child_count = reader_u32(&reader);
 	payload_bytes = reader_u32(&reader);
 	if (memcmp(magic.data, page_magic, sizeof(page_magic)) != 0 || version != PAGE_VERSION ||
-	    page.kind < PAGE_ROOT || page.kind > PAGE_LABELS)
+	    page.kind < PAGE_ROOT || page.kind >= PAGE_KINDS)
 		return rc;
 	/* The counts must account for every byte before memory is allocated for them. */
 	if ((uint64_t)page.child_count * PAGE_CHILD_BYTES + payload_bytes != reader_left(&reader))

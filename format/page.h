@@ -23,6 +23,8 @@ enum page_kind {
 	PAGE_FACE,      /* one face of one sampling point: children are tiles */
 	PAGE_INFO,      /* children: the information database (SQLite), then its pictures */
 	PAGE_LABELS,    /* format/label.h: children are the labels of patch groups */
+	PAGE_STREAM,    /* format/stream_page.h: children are blocks of a streaming mesh */
+	PAGE_KINDS
 };
 
 enum {

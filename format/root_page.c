@@ -37,6 +37,8 @@ void root_page_encode(struct buffer *out, const struct root_page *root)
 	buffer_put(out, root->background, sizeof(root->background));
 	buffer_put_u64(out, root->source_triangles);
 	buffer_put_u64(out, root->published_triangles);
+	if (root->has_stream)
+		buffer_put_u8(out, root->has_stream);
 }
 
 static bool read_vector(struct reader *reader, float vector[3])
@@ -95,6 +97,10 @@ int root_page_decode(struct root_page *out, struct bytes payload)
 		root.background[channel] = reader_u8(&reader);
 	root.source_triangles = reader_u64(&reader);
 	root.published_triangles = reader_u64(&reader);
+	if (!reader.failed && reader_left(&reader) > 0) {
+		root.has_stream = reader_u8(&reader);
+		good = good && root.has_stream == 1;
+	}
 	if (reader.failed || reader_left(&reader) > 0 || !good || !is_sane(&root))
 		return -EBADMSG;
 	lattice_fit(&root.lattice, root.box_min_m, root.box_max_m);

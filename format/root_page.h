@@ -1,6 +1,6 @@
 /* Payload of PAGE_ROOT: what a kiosk must know about a release before it fetches anything else.
- * Children, in this order: the hierarchy page, the samples page, the info page, and the labels page
- * if any part has a region. */
+ * Children, in this order: the hierarchy page, the samples page, the info page, the labels page if
+ * any part has a region, and the stream page if has_stream is set. */
 #ifndef GOPURA_FORMAT_ROOT_PAGE_H
 #define GOPURA_FORMAT_ROOT_PAGE_H
 
@@ -12,7 +12,7 @@ enum {
 	ROOT_CHILD_INFO,
 	ROOT_CHILD_COUNT, /* the children that every root page has */
 	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
-	ROOT_CHILDREN_MAX
+	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 2 /* with labels and stream */
 };
 
 enum {
@@ -50,6 +50,9 @@ struct root_page {
 	uint8_t background[3];     /* sRGB behind the model */
 	uint64_t source_triangles; /* of the original scan */
 	uint64_t published_triangles;
+	/* 1: the last child is the stream page (format/stream_page.h). Releases from before there
+	 * were such pages have no byte for it. */
+	uint8_t has_stream;
 };
 
 /* Appends the payload, for page.payload. Failures are out->error. */

@@ -117,6 +117,22 @@ int stream_encode(struct buffer *out, const struct stream_source *source)
 	return rc == -EBADMSG ? -EINVAL : rc;
 }
 
+size_t stream_block_bytes(struct bytes blocks)
+{
+	struct reader reader;
+
+	reader_init(&reader, blocks);
+	return BLOCK_HEADER_BYTES + (size_t)reader_u32(&reader) + CHECK_BYTES;
+}
+
+size_t stream_start_bytes(struct bytes stream)
+{
+	const size_t header = HEADER_BYTES + CHECK_BYTES;
+
+	return header +
+	       stream_block_bytes((struct bytes){ stream.data + header, stream.size - header });
+}
+
 /* ---- decoding */
 
 struct stream_decoder {
@@ -296,6 +312,11 @@ bool stream_decoder_complete(const struct stream_decoder *decoder)
 uint32_t stream_decoder_records(const struct stream_decoder *decoder)
 {
 	return decoder->record_count;
+}
+
+const struct stream_record *stream_decoder_list(const struct stream_decoder *decoder)
+{
+	return decoder->records;
 }
 
 void stream_decoder_show(struct stream_decoder *decoder, uint32_t record_count)

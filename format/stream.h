@@ -26,6 +26,17 @@ struct stream_source {
  * or the error of out. */
 must_check int stream_encode(struct buffer *out, const struct stream_source *source);
 
+/* The parts of a whole stream, for objects of their own: the header with the base; then blocks of
+ * records. Return the bytes of the first part of stream, and of the block at the beginning of
+ * blocks. Both must be as stream_encode made them. */
+size_t stream_start_bytes(struct bytes stream);
+size_t stream_block_bytes(struct bytes blocks);
+/* Returns how many blocks so many records take. */
+static inline uint32_t stream_block_count(uint32_t record_count)
+{
+	return record_count / STREAM_BLOCK_RECORDS + (record_count % STREAM_BLOCK_RECORDS > 0);
+}
+
 struct stream_decoder; /* private to stream.c */
 
 /* *out is owned by the caller; NULL on failure: -ENOMEM. */
@@ -41,6 +52,8 @@ bool stream_decoder_complete(const struct stream_decoder *decoder);
 uint32_t stream_decoder_records(const struct stream_decoder *decoder);
 /* Applies or undoes records until so many are applied, at most what was decoded. */
 void stream_decoder_show(struct stream_decoder *decoder, uint32_t record_count);
+/* The records that were decoded so far, in order; borrowed until the next advance. */
+const struct stream_record *stream_decoder_list(const struct stream_decoder *decoder);
 /* The mesh as it is now, borrowed; empty before the base has arrived. */
 const struct stream_mesh *stream_decoder_mesh(const struct stream_decoder *decoder);
 

@@ -51,21 +51,22 @@ static void print_objects(const struct verify_report *report)
 		[PAGE_ROOT] = "root page",       [PAGE_HIERARCHY] = "hierarchy page",
 		[PAGE_SAMPLES] = "samples page", [PAGE_BRICK] = "brick pages",
 		[PAGE_FACE] = "face pages",      [PAGE_INFO] = "information page",
-		[PAGE_LABELS] = "labels page",
+		[PAGE_LABELS] = "labels page",   [PAGE_STREAM] = "stream page",
 	};
 	uint64_t pages = 0, all;
 
-	for (int kind = PAGE_ROOT; kind <= PAGE_LABELS; kind++) {
+	for (int kind = PAGE_ROOT; kind < PAGE_KINDS; kind++) {
 		print_sum(kinds[kind], &report->pages[kind]);
 		pages += report->pages[kind].bytes;
 	}
+	print_sum("stream blocks", &report->stream_blocks);
 	print_sum("patch groups", &report->groups);
 	print_sum("tiles", &report->tiles);
 	print_sum("labels", &report->labels);
 	print_sum("information", &report->database);
 	print_sum("pictures, sound", &report->files);
 	all = pages + report->groups.bytes + report->tiles.bytes + report->database.bytes +
-	      report->files.bytes + report->labels.bytes;
+	      report->files.bytes + report->labels.bytes + report->stream_blocks.bytes;
 	printf("  %-20s %9s  %14" PRIu64 " bytes\n", "all", "", all);
 	printf("  pages are %.2f %% of that, the locator %u bytes, in %u packs\n",
 	       100.0 * (double)pages / (double)all, report->locator_bytes, report->pack_count);

@@ -11,8 +11,13 @@
 #include "pipeline/hierarchy/quadric.h"
 
 enum { SHARE = 6 /* a round removes at most one in so many vertices */ };
-/* A triangle may turn by about 75 degrees in one collapse. */
+/* A triangle that turns by more than about 75 degrees in one collapse counts as folded over. */
 #define TURN_COS 0.25
+/* What the checks of section 3.5 refuse costs so many times more where it is possible: such a
+ * collapse waits until nothing better is left. Without them, loose pieces of more than four
+ * vertices never become smaller. */
+#define LEAVES_FACTOR 4.0
+#define FOLDS_FACTOR  16.0
 
 struct choice {
 	double cost;
@@ -20,6 +25,7 @@ struct choice {
 };
 
 struct work {
+	const struct stream_options *options;
 	struct stream_collapses *out;
 	const struct patch_vertex *vertices;
 	uint32_t vertex_count;
@@ -87,11 +93,14 @@ static uint32_t find_in(const struct link *link, uint32_t vertex)
 	return STREAM_NONE;
 }
 
-/* No common neighbour but the third corners of the edge's triangles, which must keep another
- * triangle at the target; and no edge opposite to both. */
-static bool link_condition(const struct work *work, uint32_t gone, uint32_t target,
-			   const struct link *gone_link, const struct link *target_link,
-			   uint32_t at_edge)
+enum link_state { LINK_BROKEN, LINK_PINCHED, LINK_HOLDS };
+
+/* The link condition: no common neighbour but the third corners of the edge's triangles; otherwise
+ * the surface is pinched. Broken: a third corner keeps no other triangle at the target, or there is
+ * an edge opposite to both, so that no record can express it. */
+static enum link_state link_condition(const struct work *work, uint32_t gone, uint32_t target,
+				      const struct link *gone_link, const struct link *target_link,
+				      uint32_t at_edge)
 {
 	uint32_t common = 0, thirds = 0;
 
@@ -106,7 +115,7 @@ static bool link_condition(const struct work *work, uint32_t gone, uint32_t targ
 			g = find_in(gone_link, x);
 			t = find_in(target_link, x);
 			if (gone_link->triangles[g] + target_link->triangles[t] < 3)
-				return false;
+				return LINK_BROKEN;
 			thirds++;
 			continue;
 		}
@@ -115,10 +124,12 @@ static bool link_condition(const struct work *work, uint32_t gone, uint32_t targ
 			uint32_t b = work->triangles[to / 3][(to % 3 + 2) % 3];
 
 			if ((n == next && b == before) || (n == before && b == next))
-				return false;
+				return LINK_BROKEN;
 		}
 	}
-	return thirds == at_edge && common == thirds;
+	if (thirds != at_edge)
+		return LINK_BROKEN;
+	return common == thirds ? LINK_HOLDS : LINK_PINCHED;
 }
 
 static bool folds(const struct work *work, uint32_t gone, uint32_t target)
@@ -147,21 +158,30 @@ static bool folds(const struct work *work, uint32_t gone, uint32_t target)
 	return false;
 }
 
-/* Returns whether the collapse is allowed. */
-static bool allowed(const struct work *work, uint32_t gone, uint32_t target,
-		    const struct link *gone_link)
+/* Returns the factor of the cost; 0: the collapse is not possible. */
+static double factor_of(const struct work *work, uint32_t gone, uint32_t target,
+			const struct link *gone_link)
 {
 	struct link target_link;
-	uint32_t at_edge = gone_link->triangles[find_in(gone_link, target)];
+	uint32_t at_edge = gone_link->triangles[find_in(gone_link, target)], left;
+	enum link_state state;
+	double factor = 1.0;
 
-	if (at_edge > STREAM_FACES_MAX || !get_link(&target_link, work, target) ||
-	    target_link.degree + gone_link->degree - 2 * at_edge > STREAM_RING_MAX)
-		return false;
+	if (at_edge > STREAM_FACES_MAX || !get_link(&target_link, work, target))
+		return 0.0;
+	left = target_link.degree + gone_link->degree - 2 * at_edge;
+	if (left == 0 || left > STREAM_RING_MAX)
+		return 0.0;
+	state = link_condition(work, gone, target, gone_link, &target_link, at_edge);
+	if (state == LINK_BROKEN)
+		return 0.0;
 	/* A vertex of a border, or of an edge with three triangles, moves along it. */
-	if (gone_link->special && (gone_link->special != 2 || at_edge == 2))
-		return false;
-	return link_condition(work, gone, target, gone_link, &target_link, at_edge) &&
-	       !folds(work, gone, target);
+	if (state == LINK_PINCHED ||
+	    (gone_link->special && (gone_link->special != 2 || at_edge == 2)))
+		factor = LEAVES_FACTOR;
+	if (folds(work, gone, target))
+		factor *= FOLDS_FACTOR;
+	return factor > 1.0 && !work->options->loose ? 0.0 : factor;
 }
 
 /* ---- loose pieces */
@@ -203,20 +223,27 @@ static bool piece_is_plain(const struct work *work, const uint32_t *piece, uint3
 	return true;
 }
 
+/* The area times the squared distance to where the piece vanishes. */
 static double piece_cost(const struct work *work, const uint32_t *piece, uint32_t count)
 {
-	double largest = 0.0;
+	double largest = 0.0, area = 0.0;
 
-	for (uint32_t i = 1; i < count; i++) {
-		double a[3], b[3], square = 0.0;
+	for (uint32_t i = 0; i < count; i++) {
+		double a[3], b[3], c[3], normal[3], square = 0.0;
 
 		position_of(a, work, piece[0]);
 		position_of(b, work, piece[i]);
 		for (int k = 0; k < 3; k++)
 			square += (a[k] - b[k]) * (a[k] - b[k]);
 		largest = square > largest ? square : largest;
+		for (uint32_t at = work->first[piece[i]]; at != STREAM_NONE; at = work->next[at]) {
+			position_of(a, work, work->triangles[at / 3][0]);
+			position_of(b, work, work->triangles[at / 3][1]);
+			position_of(c, work, work->triangles[at / 3][2]);
+			area += cross_of(normal, a, b, c) / 2; /* three times, as in quadrics */
+		}
 	}
-	return largest * largest; /* area times squared distance */
+	return area * largest;
 }
 
 /* ---- rounds */
@@ -243,12 +270,15 @@ static void choose(struct work *work, uint32_t vertex)
 	if (!get_link(&link, work, vertex))
 		return;
 	for (uint32_t i = 0; i < link.count; i++) {
-		double to[3], cost;
+		double to[3], cost, factor;
 
 		position_of(to, work, link.vertices[i]);
 		cost = quadric_at(&work->quadrics[vertex], to);
-		if (cost < best.cost && allowed(work, vertex, link.vertices[i], &link)) {
-			best.cost = cost;
+		if (cost >= best.cost)
+			continue;
+		factor = factor_of(work, vertex, link.vertices[i], &link);
+		if (factor > 0.0 && cost * factor < best.cost) {
+			best.cost = cost * factor;
 			best.target = link.vertices[i];
 		}
 	}
@@ -320,7 +350,13 @@ static int collapse(struct work *work, const struct choice *choice)
 					.round = work->round };
 	uint32_t vanished[4 * STREAM_RING_MAX], at, next;
 	int rc = ARRAY_RESERVE(out->items, out->room, out->count + 1, STREAM_VERTICES_MAX);
+	double from[3], to[3];
 
+	position_of(from, work, choice->gone);
+	position_of(to, work, choice->target);
+	item.cost = fmax(quadric_at(&work->quadrics[choice->gone], to) -
+				 quadric_at(&work->quadrics[choice->gone], from),
+			 0.0);
 	item.first = out->list_count;
 	for (at = work->first[choice->gone]; rc == 0 && at != STREAM_NONE; at = next) {
 		uint32_t *corners = work->triangles[at / 3];
@@ -349,12 +385,12 @@ static int collapse(struct work *work, const struct choice *choice)
 	return 0;
 }
 
-static int vanish(struct work *work, uint32_t vertex)
+static int vanish(struct work *work, uint32_t vertex, double cost)
 {
 	struct stream_collapses *out = work->out;
-	struct stream_collapse item = { .target = STREAM_NONE,
-					.gone = vertex,
-					.round = work->round };
+	struct stream_collapse item = {
+		.target = STREAM_NONE, .gone = vertex, .cost = cost, .round = work->round
+	};
 	uint32_t count;
 	int rc = ARRAY_RESERVE(out->items, out->room, out->count + 1, STREAM_VERTICES_MAX);
 
@@ -377,10 +413,11 @@ static int vanish(struct work *work, uint32_t vertex)
 	return 0;
 }
 
-/* Returns the number of collapses, or an error. */
+/* Returns the number of collapses, or an error. The costlier half of the choices waits for a later
+ * round: by then there may be better ones. */
 static int do_round(struct work *work)
 {
-	uint32_t most = work->alive / SHARE + 1, count = 0;
+	uint32_t most, half, count = 0;
 	int rc = 0;
 
 	work->choice_count = 0;
@@ -389,8 +426,10 @@ static int do_round(struct work *work)
 	for (uint32_t v = 0; v < work->vertex_count; v++)
 		choose(work, v);
 	qsort(work->choices, work->choice_count, sizeof(*work->choices), compare_choices);
-	for (uint32_t i = 0; rc == 0 && i < work->choice_count && count < most; i++) {
-		if (work->alive <= STREAM_BASE_VERTICES)
+	most = work->alive / SHARE + 1;
+	half = (work->choice_count + 1) / 2;
+	for (uint32_t i = 0; rc == 0 && i < half && count < most; i++) {
+		if (work->alive <= work->options->base_vertices)
 			break;
 		const struct choice *choice = &work->choices[i];
 
@@ -400,11 +439,51 @@ static int do_round(struct work *work)
 		lock_star(work, choice->gone);
 		if (choice->target != STREAM_NONE)
 			lock_star(work, choice->target);
-		rc = choice->target == STREAM_NONE ? vanish(work, choice->gone)
+		rc = choice->target == STREAM_NONE ? vanish(work, choice->gone, choice->cost)
 						   : collapse(work, choice);
 		count++;
 	}
 	return rc < 0 ? rc : (int)count;
+}
+
+/* Returns whether no other triangle has the edge from a to b, in either direction. */
+static bool is_border(const struct work *work, uint32_t triangle, uint32_t a, uint32_t b)
+{
+	for (uint32_t at = work->first[a]; at != STREAM_NONE; at = work->next[at]) {
+		const uint32_t *corners = work->triangles[at / 3];
+
+		if (at / 3 != triangle && (corners[0] == b || corners[1] == b || corners[2] == b))
+			return false;
+	}
+	return true;
+}
+
+/* Planes through the borders, upright on their triangles, so that leaving a border costs
+ * something (Garland and Heckbert 1997, section 6). */
+static void add_borders(struct work *work, uint32_t triangle_count)
+{
+	for (uint32_t corner = 0; corner < 3 * triangle_count; corner++) {
+		const uint32_t *corners = work->triangles[corner / 3];
+		uint32_t from = corners[corner % 3], to = corners[(corner % 3 + 1) % 3];
+		double a[3], b[3], c[3], normal[3], upright[3], length, square = 0.0;
+
+		if (!is_border(work, corner / 3, from, to))
+			continue;
+		position_of(a, work, from);
+		position_of(b, work, to);
+		position_of(c, work, corners[(corner % 3 + 2) % 3]);
+		if (cross_of(normal, a, b, c) == 0.0)
+			continue;
+		for (int i = 0; i < 3; i++) {
+			normal[i] += a[i];
+			square += (b[i] - a[i]) * (b[i] - a[i]);
+		}
+		length = cross_of(upright, a, b, normal);
+		for (int i = 0; i < 3; i++)
+			upright[i] /= length;
+		quadric_add_plane(&work->quadrics[from], upright, a, square / 2);
+		quadric_add_plane(&work->quadrics[to], upright, a, square / 2);
+	}
 }
 
 static void fill(struct work *work, uint32_t triangle_count)
@@ -426,14 +505,17 @@ static void fill(struct work *work, uint32_t triangle_count)
 			work->first[v] = 3 * t + k;
 			if (length > 0.0)
 				quadric_add_plane(&work->quadrics[v], normal, a, length / 2);
+			work->out->area += length / 2;
 		}
 	}
 }
 
 int stream_collapse(struct stream_collapses *out, const struct patch_vertex *vertices,
-		    uint32_t vertex_count, uint32_t (*triangles)[3], uint32_t triangle_count)
+		    uint32_t vertex_count, uint32_t (*triangles)[3], uint32_t triangle_count,
+		    const struct stream_options *options)
 {
-	struct work work = { .out = out,
+	struct work work = { .options = options,
+			     .out = out,
 			     .vertices = vertices,
 			     .vertex_count = vertex_count,
 			     .triangles = triangles,
@@ -450,6 +532,7 @@ int stream_collapse(struct stream_collapses *out, const struct patch_vertex *ver
 	work.choices = malloc(room * sizeof(*work.choices));
 	if (work.first && work.next && work.quadrics && work.dead && work.locked && work.choices) {
 		fill(&work, triangle_count);
+		add_borders(&work, triangle_count);
 		do
 			rc = do_round(&work);
 		while (rc > 0);

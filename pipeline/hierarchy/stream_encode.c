@@ -2,10 +2,9 @@
 #include "pipeline/hierarchy/stream_encode.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "pipeline/hierarchy/stream_collapse.h"
 
 struct replay {
 	const struct patch_vertex *vertices; /* of the input */
@@ -209,10 +208,24 @@ static int replay_rounds(struct replay *replay, struct stream_stats *stats)
 			if (rc == 0)
 				stream_mesh_apply(&replay->mesh, record);
 			stats->piece_count += piece;
+			stats->errors[(replay->record_count - 1) / STREAM_BLOCK_RECORDS] +=
+				all->items[i].cost;
 		}
 		end = begin;
 	}
 	return rc;
+}
+
+/* errors holds the cost of each block's records; what is missing of the mesh after some blocks is
+ * the sum of all later ones. */
+static void sum_errors(struct stream_stats *stats, double area)
+{
+	double sum = 0.0;
+
+	for (uint32_t i = stream_block_count(stats->record_count); i-- > 0;) {
+		sum += stats->errors[i];
+		stats->errors[i] = area > 0.0 ? sqrt(sum / area) : 0.0;
+	}
 }
 
 static void replay_finish(struct replay *replay)
@@ -254,7 +267,8 @@ static int replay_init(struct replay *replay, const uint32_t (*triangles)[3])
 }
 
 int stream_make(struct buffer *out, struct stream_stats *stats, const struct patch_vertex *vertices,
-		uint32_t vertex_count, const uint32_t (*triangles)[3], uint32_t triangle_count)
+		uint32_t vertex_count, const uint32_t (*triangles)[3], uint32_t triangle_count,
+		const struct stream_options *options)
 {
 	struct replay replay = { .vertices = vertices,
 				 .vertex_count = vertex_count,
@@ -264,7 +278,7 @@ int stream_make(struct buffer *out, struct stream_stats *stats, const struct pat
 	*stats = (struct stream_stats){ 0 };
 	if (rc == 0)
 		rc = stream_collapse(&replay.collapses, vertices, vertex_count, replay.triangles,
-				     triangle_count);
+				     triangle_count, options);
 	if (rc == 0) {
 		make_base(&replay);
 		keep_unused(&replay, triangles);
@@ -285,6 +299,7 @@ int stream_make(struct buffer *out, struct stream_stats *stats, const struct pat
 		};
 
 		stats->record_count = replay.record_count;
+		sum_errors(stats, replay.collapses.area);
 		rc = stream_encode(out, &source);
 	}
 	replay_finish(&replay);

@@ -16,6 +16,8 @@
 #include "format/picture.h"
 #include "format/root_page.h"
 #include "format/samples.h"
+#include "format/stream.h"
+#include "format/stream_page.h"
 #include "format/tile.h"
 #include "storage/info.h"
 
@@ -140,6 +142,29 @@ static int print_face(FILE *to, const struct page *page)
 	return rc;
 }
 
+static int print_stream(FILE *to, const struct page *page)
+{
+	struct stream_decoder *decoder = NULL;
+	struct stream_page stream;
+	int rc = stream_page_decode(&stream, page->payload, page->child_count);
+
+	if (rc == 0)
+		rc = stream_decoder_create(&decoder);
+	if (rc == 0)
+		rc = stream_decoder_advance(decoder, stream.start);
+	if (rc == 0) {
+		const struct stream_mesh *mesh = stream_decoder_mesh(decoder);
+
+		fprintf(to, "  base               %u vertices, %u triangles, error %.4f m\n",
+			mesh->vertex_count, mesh->triangle_count,
+			(double)stream_page_error_m(&stream, 0));
+		fprintf(to, "  whole              %u vertices, %u triangles, as groups 0 to %u\n",
+			mesh->vertex_room, mesh->triangle_room, stream.group_count - 1);
+	}
+	stream_decoder_destroy(decoder);
+	return rc;
+}
+
 static int print_page(FILE *to, struct bytes bytes)
 {
 	static const struct {
@@ -153,6 +178,7 @@ static int print_page(FILE *to, struct bytes bytes)
 		[PAGE_FACE] = { "face", print_face },
 		[PAGE_INFO] = { "information", NULL },
 		[PAGE_LABELS] = { "labels", NULL },
+		[PAGE_STREAM] = { "stream", print_stream },
 	};
 	struct page page;
 	int rc = page_decode(&page, bytes);

@@ -28,8 +28,9 @@ struct publish_report {
 };
 
 /* Publishes a release. children: the pages of hierarchy, samples, information and, if there are
- * any, labels; objects holds them and everything below them. If nothing changed and there is no new
- * comment, only the timestamp is renewed. Errors are logged. */
+ * any, labels and, if root->has_stream is set, the streaming mesh; objects holds them and
+ * everything below them. If nothing changed and there is no new comment, only the timestamp is
+ * renewed. Errors are logged. */
 must_check int publish_parts(struct publish_report *report, const struct publish_target *target,
 			     struct object_store *objects, const struct root_page *root,
 			     const struct page_child *children, uint32_t child_count);

@@ -15,6 +15,7 @@
 #include "pipeline/release/publish_info.h"
 #include "pipeline/release/publish_labels.h"
 #include "pipeline/release/publish_samples.h"
+#include "pipeline/release/publish_stream.h"
 #include "pipeline/release/start_view.h"
 
 /* The target folder and the signing keys. */
@@ -175,6 +176,11 @@ static int publish_objects(struct publish_content_report *report,
 	scans_drop_mesh(sources_scans(sources));
 	if (rc > 0)
 		child_count = ROOT_CHILD_LABELS + 1;
+	if (rc >= 0)
+		rc = publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
+				    &children[child_count]);
+	root.has_stream = rc == 1;
+	child_count += root.has_stream;
 	if (rc >= 0)
 		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
 	report->published_triangles = root.published_triangles;

@@ -11,6 +11,7 @@
 #include "format/patch.h"
 #include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/hierarchy/normal_cone.h"
+#include "pipeline/release/publish_precision.h"
 
 /* Returns the smallest share that contains the top group. */
 static double share_of_top(const struct master *master)
@@ -37,10 +38,7 @@ static int make_cut(struct master_cut *cut, const struct master *master, double 
 }
 
 /* Vertex colours are seen only where there is no image, and need no more precision. */
-enum { COLOUR_BITS = 5, OPEN_BITS = 4, NORMAL_BITS = 5, ZEROS_MAX = 12 };
-
-/* Positions are rounded to steps that are at most this part of the error of the finest shown. */
-#define ERROR_SHARE 8
+enum { COLOUR_BITS = 5, OPEN_BITS = 4, NORMAL_BITS = 5 };
 
 static void round_colours(uint8_t colour[4])
 {
@@ -52,18 +50,6 @@ static void round_normal(int8_t normal[2])
 {
 	for (int i = 0; i < 2; i++)
 		normal[i] = patch_round_normal(normal[i], NORMAL_BITS);
-}
-
-/* Rounds to multiples of 2^zeros. places: how many the lattice has along an axis. */
-static void round_position(int32_t position[3], int zeros, int32_t places)
-{
-	int32_t step = 1 << zeros;
-
-	for (int i = 0; i < 3; i++) {
-		int32_t value = (position[i] + step / 2) / step * step;
-
-		position[i] = value < places ? value : places - step;
-	}
 }
 
 struct patch_error {
@@ -115,17 +101,6 @@ static int median_error(float *out, const struct master *master, const struct ma
 	return 0;
 }
 
-/* Returns how many low bits of positions say less than an ERROR_SHARE-th of the error. They are the
- * same for the whole release, so that neighbours still meet. */
-static int position_zeros(float error_m, double step_m)
-{
-	int zeros = 0;
-
-	while (zeros < ZEROS_MAX && ERROR_SHARE * step_m * (2 << zeros) <= error_m)
-		zeros++;
-	return zeros;
-}
-
 /* Spheres must hold what rounding moves; all grow alike, so those that enclose others still do. */
 static void grow_spheres(struct hierarchy *hierarchy, double step_m, int zeros)
 {
@@ -152,7 +127,7 @@ static int round_group(struct buffer *object, struct hierarchy *hierarchy, uint3
 		return rc;
 	for (uint32_t p = 0; p < count; p++) {
 		for (uint32_t v = 0; v < meshes[p].vertex_count; v++) {
-			round_position(meshes[p].vertices[v].position, zeros, places);
+			precision_round_position(meshes[p].vertices[v].position, zeros, places);
 			round_colours(meshes[p].vertices[v].colour);
 			round_normal(meshes[p].vertices[v].normal);
 		}
@@ -216,7 +191,8 @@ int publish_hierarchy(struct object_store *objects, const struct master *master,
 	if (rc == 0)
 		rc = median_error(&error_m, master, &cut);
 	if (rc == 0) {
-		zeros = position_zeros(error_m, master->lattice.step_m);
+		/* The same for the whole release, so that neighbours still meet. */
+		zeros = precision_zeros_for(error_m, master->lattice.step_m);
 		grow_spheres(&cut.hierarchy, master->lattice.step_m, zeros);
 		children = calloc(cut.hierarchy.group_count, sizeof(*children));
 		rc = children ? add_groups(objects, master, &cut, zeros, children) : -ENOMEM;

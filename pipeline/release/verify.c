@@ -178,7 +178,7 @@ static int look_into(struct verify_walk *walk, enum page_kind kind, const struct
 		[PAGE_ROOT] = verify_root_page,       [PAGE_HIERARCHY] = verify_hierarchy_page,
 		[PAGE_SAMPLES] = verify_samples_page, [PAGE_BRICK] = verify_brick_page,
 		[PAGE_FACE] = verify_face_page,       [PAGE_INFO] = verify_info_page,
-		[PAGE_LABELS] = verify_labels_page,
+		[PAGE_LABELS] = verify_labels_page,   [PAGE_STREAM] = verify_stream_page,
 	};
 	char hex[HASH_HEX_BYTES];
 	int rc;

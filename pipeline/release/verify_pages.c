@@ -6,6 +6,8 @@
 
 #include "format/article.h"
 #include "format/label.h"
+#include "format/stream.h"
+#include "format/stream_page.h"
 #include "pipeline/release/verify_pages.h"
 
 static int blame_page(struct verify_walk *walk, const struct verify_page *page, const char *text)
@@ -37,21 +39,25 @@ static void count(struct verify_sum *sum, struct bytes object)
 
 int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 {
-	static const enum page_kind kinds[ROOT_CHILDREN_MAX] = {
+	static const enum page_kind kinds[] = {
 		[ROOT_CHILD_HIERARCHY] = PAGE_HIERARCHY,
 		[ROOT_CHILD_SAMPLES] = PAGE_SAMPLES,
 		[ROOT_CHILD_INFO] = PAGE_INFO,
 		[ROOT_CHILD_LABELS] = PAGE_LABELS,
 	};
+	const struct root_page *root = &walk->report->root;
 	int rc = root_page_decode(&walk->report->root, page->page.payload);
+	uint32_t plain;
 
 	if (rc < 0)
 		return rc;
-	if (page->page.child_count < ROOT_CHILD_COUNT || page->page.child_count > ROOT_CHILDREN_MAX)
+	plain = page->page.child_count > 0 ? page->page.child_count - root->has_stream : 0;
+	if (plain < ROOT_CHILD_COUNT || plain > ROOT_CHILD_LABELS + 1)
 		return blame_page(walk, page,
-				  "a root page has three children, or four with labels");
+				  "a root page has three children, and one each for labels and the "
+				  "streaming mesh");
 	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
-		rc = verify_later(walk, page, i, kinds[i]);
+		rc = verify_later(walk, page, i, i < plain ? kinds[i] : PAGE_STREAM);
 	return rc;
 }
 
@@ -108,6 +114,59 @@ int verify_hierarchy_page(struct verify_walk *walk, const struct verify_page *pa
 	for (uint32_t i = 0; i < hierarchy->patch_count; i++)
 		walk->report->hierarchy_triangles += hierarchy->patches[i].triangle_count;
 	walk->report->patches = hierarchy->patch_count;
+	return rc;
+}
+
+/* ---- the streaming mesh ---- */
+
+/* Decodes the whole stream as it arrives: the beginning on the page, then block by block. */
+static int check_stream(struct verify_walk *walk, const struct verify_page *page,
+			struct stream_decoder *decoder, struct buffer *stream)
+{
+	int rc = stream_decoder_advance(decoder, buffer_bytes(stream));
+
+	if (rc == 0 && stream_decoder_mesh(decoder)->triangle_count == 0)
+		return blame_page(walk, page, "has no whole base");
+	if (rc == 0 && stream_decoder_mesh(decoder)->vertex_room > STREAM_PAGE_VERTICES_MAX)
+		return blame_page(walk, page, "has more vertices than a kiosk draws as one mesh");
+	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++) {
+		const uint32_t before = stream_decoder_records(decoder);
+		struct bytes object;
+
+		rc = verify_child(walk, page, i, &object);
+		if (rc < 0)
+			return rc;
+		count(&walk->report->stream_blocks, object);
+		buffer_put(stream, object.data, object.size);
+		rc = stream->error ? stream->error
+				   : stream_decoder_advance(decoder, buffer_bytes(stream));
+		if (rc == -EBADMSG || (rc == 0 && stream_decoder_records(decoder) == before))
+			return blame_child(walk, page, i, "block of the streaming mesh",
+					   "does not decode");
+	}
+	if (rc == 0 && !stream_decoder_complete(decoder))
+		return blame_page(walk, page, "lacks blocks of the streaming mesh");
+	return rc;
+}
+
+int verify_stream_page(struct verify_walk *walk, const struct verify_page *page)
+{
+	struct stream_decoder *decoder = NULL;
+	struct stream_page stream;
+	struct buffer bytes;
+	int rc = stream_page_decode(&stream, page->page.payload, page->page.child_count);
+
+	if (rc == 0 && stream.group_count > walk->hierarchy.group_count)
+		rc = blame_page(walk, page, "names more patch groups than there are");
+	buffer_init(&bytes, OBJECT_BYTES_MAX);
+	if (rc == 0)
+		rc = stream_decoder_create(&decoder);
+	if (rc == 0) {
+		buffer_put(&bytes, stream.start.data, stream.start.size);
+		rc = check_stream(walk, page, decoder, &bytes);
+	}
+	stream_decoder_destroy(decoder);
+	buffer_finish(&bytes);
 	return rc;
 }
 

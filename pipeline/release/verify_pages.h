@@ -12,5 +12,6 @@ must_check int verify_brick_page(struct verify_walk *walk, const struct verify_p
 must_check int verify_face_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_info_page(struct verify_walk *walk, const struct verify_page *page);
 must_check int verify_labels_page(struct verify_walk *walk, const struct verify_page *page);
+must_check int verify_stream_page(struct verify_walk *walk, const struct verify_page *page);
 
 #endif

@@ -9,7 +9,8 @@
 
 bool scene_has_labels(const struct scene *scene)
 {
-	return scene->has_root && scene->root_child_count > ROOT_CHILD_LABELS;
+	return scene->has_root &&
+	       scene->root_child_count - scene->root.has_stream > ROOT_CHILD_LABELS;
 }
 
 void scene_drop_labels(struct scene *scene)

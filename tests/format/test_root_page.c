@@ -69,6 +69,27 @@ static void gives_back_every_field(void **state)
 	buffer_finish(&buffer);
 }
 
+/* Releases from before there were streams end before the byte that says so. */
+static void says_whether_there_is_a_stream(void **state)
+{
+	struct root_page root = sample_root(), back;
+	struct buffer buffer;
+
+	(void)state;
+	root.has_stream = 1;
+	buffer_init(&buffer, 4096);
+	root_page_encode(&buffer, &root);
+	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0 && back.has_stream == 1);
+	CHECK(root_page_decode(&back, (struct bytes){ buffer.data, buffer.size - 1 }) == 0);
+	CHECK(back.has_stream == 0);
+	buffer.data[buffer.size - 1] = 2;
+	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
+	buffer.data[buffer.size - 1] = 1;
+	buffer_put_u8(&buffer, 1);
+	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
+	buffer_finish(&buffer);
+}
+
 static void refuses_values_that_would_break_a_picture(void **state)
 {
 	struct root_page root;
@@ -104,6 +125,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gives_back_every_field),
+		cmocka_unit_test(says_whether_there_is_a_stream),
 		cmocka_unit_test(refuses_values_that_would_break_a_picture),
 	};
 

@@ -85,6 +85,20 @@ static void add_piece(struct soup *soup, double x)
 	}
 }
 
+/* Three sides around, open at both ends: no edge fulfils the link condition. */
+static void add_tube(struct soup *soup, double x)
+{
+	uint32_t v[6];
+
+	for (int i = 0; i < 6; i++)
+		v[i] = add_vertex(soup, x + 60 * (i % 3), 40000 + 90 * (i % 3 == 1),
+				  500 + i / 3 * 80);
+	for (uint32_t i = 0; i < 3; i++) {
+		add_triangle(soup, v[i], v[(i + 1) % 3], v[3 + i]);
+		add_triangle(soup, v[(i + 1) % 3], v[3 + (i + 1) % 3], v[3 + i]);
+	}
+}
+
 static void soup_init(struct soup *soup)
 {
 	*soup = (struct soup){ 0 };
@@ -169,11 +183,20 @@ static uint32_t check_valid(const struct stream_mesh *mesh)
 	return odd;
 }
 
-static void make(struct buffer *out, struct stream_stats *stats, const struct soup *soup)
+static void make_as(struct buffer *out, struct stream_stats *stats, const struct soup *soup,
+		    uint32_t base_vertices, bool loose)
 {
+	const struct stream_options options = { base_vertices, loose };
+
 	buffer_init(out, 64 << 20);
 	CHECK(stream_make(out, stats, soup->vertices, soup->vertex_count,
-			  (const uint32_t(*)[3])soup->triangles, soup->triangle_count) == 0);
+			  (const uint32_t(*)[3])soup->triangles, soup->triangle_count,
+			  &options) == 0);
+}
+
+static void make(struct buffer *out, struct stream_stats *stats, const struct soup *soup)
+{
+	make_as(out, stats, soup, 256, false);
 }
 
 static void the_whole_stream_is_the_input_bit_for_bit(void **state)
@@ -223,6 +246,55 @@ static void every_prefix_of_a_closed_surface_is_closed(void **state)
 		CHECK(check_valid(stream_decoder_mesh(decoder)) == 0);
 	}
 	stream_decoder_destroy(decoder);
+	buffer_finish(&bytes);
+	soup_finish(&soup);
+}
+
+static void loose_pieces_become_smaller_where_that_is_allowed(void **state)
+{
+	struct stream_stats strict, loose;
+	struct stream_decoder *decoder;
+	struct buffer bytes;
+	struct soup soup;
+
+	(void)state;
+	soup_init(&soup);
+	for (int i = 0; i < PIECES; i++)
+		add_tube(&soup, 300 + 400 * i);
+	make_as(&bytes, &strict, &soup, 16, false);
+	CHECK(strict.base_vertices == soup.vertex_count);
+	buffer_finish(&bytes);
+	make_as(&bytes, &loose, &soup, 16, true);
+	CHECK(loose.base_vertices <= 16);
+	CHECK(stream_decoder_create(&decoder) == 0);
+	CHECK(stream_decoder_advance(decoder, buffer_bytes(&bytes)) == 0);
+	check_whole(stream_decoder_mesh(decoder), &soup);
+	for (uint32_t r = 0; r <= loose.record_count; r++) {
+		stream_decoder_show(decoder, r);
+		check_valid(stream_decoder_mesh(decoder));
+	}
+	stream_decoder_destroy(decoder);
+	buffer_finish(&bytes);
+	soup_finish(&soup);
+}
+
+static void errors_say_how_much_each_block_adds(void **state)
+{
+	static struct stream_stats stats;
+	struct buffer bytes;
+	struct soup soup;
+	uint32_t blocks;
+
+	(void)state;
+	everything(&soup);
+	make_as(&bytes, &stats, &soup, 64, true);
+	blocks = stream_block_count(stats.record_count);
+	CHECK(blocks >= 3 && stats.errors[blocks] == 0.0);
+	for (uint32_t i = 0; i < blocks; i++)
+		CHECK(stats.errors[i] > stats.errors[i + 1]);
+	/* The cheap collapses come first, so the first block of the stream adds most. */
+	CHECK(stats.errors[0] > 2 * stats.errors[1]);
+	CHECK(stats.errors[0] < 5000); /* the torus is 11000 wide */
 	buffer_finish(&bytes);
 	soup_finish(&soup);
 }
@@ -294,6 +366,7 @@ static void a_damaged_block_is_refused_and_the_prefix_kept(void **state)
 
 static void refuses_what_is_no_mesh(void **state)
 {
+	const struct stream_options options = { .base_vertices = 256 };
 	const uint32_t beyond[1][3] = { { 0, 1, 3 } }, twice[1][3] = { { 0, 1, 1 } };
 	struct patch_vertex vertices[3] = { 0 };
 	struct stream_stats stats;
@@ -301,9 +374,10 @@ static void refuses_what_is_no_mesh(void **state)
 
 	(void)state;
 	buffer_init(&out, 1 << 20);
-	CHECK(stream_make(&out, &stats, vertices, 3, beyond, 1) == -EINVAL);
-	CHECK(stream_make(&out, &stats, vertices, 3, twice, 1) == -EINVAL);
-	CHECK(stream_make(&out, &stats, vertices, STREAM_VERTICES_MAX + 1, twice, 0) == -EINVAL);
+	CHECK(stream_make(&out, &stats, vertices, 3, beyond, 1, &options) == -EINVAL);
+	CHECK(stream_make(&out, &stats, vertices, 3, twice, 1, &options) == -EINVAL);
+	CHECK(stream_make(&out, &stats, vertices, STREAM_VERTICES_MAX + 1, twice, 0, &options) ==
+	      -EINVAL);
 	buffer_finish(&out);
 }
 
@@ -312,6 +386,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(the_whole_stream_is_the_input_bit_for_bit),
 		cmocka_unit_test(every_prefix_of_a_closed_surface_is_closed),
+		cmocka_unit_test(loose_pieces_become_smaller_where_that_is_allowed),
+		cmocka_unit_test(errors_say_how_much_each_block_adds),
 		cmocka_unit_test(a_truncated_stream_keeps_its_whole_blocks),
 		cmocka_unit_test(a_damaged_block_is_refused_and_the_prefix_kept),
 		cmocka_unit_test(refuses_what_is_no_mesh),

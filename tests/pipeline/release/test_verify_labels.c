@@ -93,8 +93,8 @@ static int publish_and_verify(const char *part, uint32_t triangles, uint32_t gro
 	CHECK(info_build(&built, &info) == 0);
 	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	add_page(objects, part, triangles, groups, &children[ROOT_CHILD_LABELS]);
-	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILDREN_MAX) ==
-	      0);
+	CHECK(publish_parts(&report, &target, objects, &tiny.root, children,
+			    ROOT_CHILD_LABELS + 1) == 0);
 	info_built_finish(&built);
 	object_store_destroy(objects);
 	CHECK(release_reader_create(&verify.reader, &options) == 0);

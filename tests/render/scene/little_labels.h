@@ -127,7 +127,7 @@ static inline void little_label(struct little_release *r, const char *part,
 	children[ROOT_CHILD_LABELS] =
 		little_page(r, PAGE_LABELS, groups, hierarchy.child_count, &payload);
 	buffer_put(&payload, root.payload.data, root.payload.size);
-	child = little_page(r, PAGE_ROOT, children, ROOT_CHILDREN_MAX, &payload);
+	child = little_page(r, PAGE_ROOT, children, ROOT_CHILD_LABELS + 1, &payload);
 	r->root = child.hash;
 	r->root_bytes = child.size;
 	buffer_finish(&payload);
