@@ -154,7 +154,9 @@ int frame_period_ms(const struct frame *frame)
 
 static void log_first_picture(struct frame *frame)
 {
-	if (frame->pictured || shown_by(frame)->frame.patches == 0)
+	const struct scene_frame *shown = &shown_by(frame)->frame;
+
+	if (frame->pictured || shown->patches + shown->stream_triangles == 0)
 		return;
 	frame->pictured = true;
 	log_info("app", "first picture after %lld ms",

@@ -62,6 +62,28 @@ static bool waits(struct dissolve *dissolve, uint32_t group, float passed_ms)
 	return true;
 }
 
+/* Returns whether the root group waits: with it, every group that the cut shows begins to appear.
+ */
+static bool root_waits(struct dissolve *dissolve, float passed_ms)
+{
+	const uint32_t groups = dissolve->cut->hierarchy->group_count;
+	for (uint32_t g = 0; g < groups && !dissolve->unready[0]; g++)
+		dissolve->unready[0] = dissolve->unready[g];
+	return waits(dissolve, 0, passed_ms);
+}
+
+static void step_root(struct dissolve *dissolve, float passed_ms)
+{
+	const float step = passed_ms / DISSOLVE_MS;
+	float *share = &dissolve->share[0];
+	if (dissolve->root == ROOT_AT_ONCE)
+		*share = 1;
+	else if (dissolve->root == ROOT_HELD)
+		*share = 0;
+	else if (!root_waits(dissolve, passed_ms))
+		*share = vec_least(*share + step, 1);
+}
+
 void dissolve_step(struct dissolve *dissolve, const uint8_t *loaded, float passed_ms)
 {
 	const struct cut *cut = dissolve->cut;
@@ -75,7 +97,7 @@ void dissolve_step(struct dissolve *dissolve, const uint8_t *loaded, float passe
 		if (!loaded[g])
 			*share = 0;
 		else if (g == 0)
-			*share = 1; /* the root group replaces nothing */
+			step_root(dissolve, passed_ms);
 		else if (cut->shown[g] && !waits(dissolve, g, passed_ms))
 			*share += step;
 		*share = vec_least(*share, most);
@@ -87,6 +109,8 @@ void dissolve_step(struct dissolve *dissolve, const uint8_t *loaded, float passe
 			*share = vec_most(*share - step, share_above(dissolve, g));
 		dissolve->moving |= !cut->shown[g] && *share > 0;
 	}
+	if (dissolve->root == ROOT_HELD)
+		dissolve->moving = false;
 	memset(dissolve->unready, 0, cut->hierarchy->group_count);
 }
 

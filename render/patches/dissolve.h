@@ -15,12 +15,20 @@ enum {
 	DISSOLVE_WAIT_MS = 500 /* longest wait for the images of a group about to appear */
 };
 
+/* How the root group appears, which replaces no patches. */
+enum dissolve_root {
+	ROOT_AT_ONCE, /* nothing else is shown */
+	ROOT_HELD,    /* not: something else is shown in its place */
+	ROOT_APPEARS, /* in the pixels of what is shown in its place, as any group */
+};
+
 struct dissolve {
-	const struct cut *cut; /* borrowed */
-	float *share;          /* per group; owned, like all below */
-	float *waited_ms;      /* how long a group about to appear has waited */
-	uint8_t *unready;      /* set by dissolve_hold since the last step */
-	bool moving;           /* some share is still changing */
+	const struct cut *cut;   /* borrowed */
+	enum dissolve_root root; /* set by the owner before a step */
+	float *share;            /* per group; owned, like all below */
+	float *waited_ms;        /* how long a group about to appear has waited */
+	uint8_t *unready;        /* set by dissolve_hold since the last step */
+	bool moving;             /* some share is still changing */
 };
 
 /* The pixels in which a patch is drawn: those with u in [low, high). */

@@ -77,6 +77,8 @@ struct scene_frame {
 	bool moving;  /* a fade is in progress or an upload waits: draw again soon */
 	bool settled; /* nothing is wanted, decoding or fading, and accumulation is complete */
 	uint32_t triangles, patches, tiles_uploaded, depth_faces_drawn;
+	/* of the streaming mesh, which is shown before there are patches; 0: not shown */
+	uint32_t stream_triangles;
 	/* share of the model's pixels that images colour; -1 where not settled */
 	float image_share;
 };

@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_plan.h"
+#include "render/scene/scene_stream.h"
 #include "render/scene/scene_visibility.h"
 #include "render/scene/scene_wants.h"
 
@@ -228,6 +229,7 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.shares = shares,
 	};
 	draw_pieces(scene, &frame);
+	scene_draw_stream(scene, &frame);
 }
 
 /* Returns the share of the model's pixels that images colour, from a small picture. */
@@ -264,7 +266,8 @@ static float count_share(struct scene *scene)
 static bool is_busy(const struct scene *scene)
 {
 	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
-	       scene->depth_is_stale || pool_busy(scene->pool) > 0;
+	       scene->depth_is_stale || stream_growth_moves(&scene->stream.growth) ||
+	       pool_busy(scene->pool) > 0;
 }
 
 static bool view_changed(const struct scene *scene, const struct view *view)
@@ -299,6 +302,11 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	if (scene->still_frames > STILL_FRAMES && upload_us < UPLOAD_BUDGET_REST_US)
 		upload_us = UPLOAD_BUDGET_REST_US;
 	scene_upload(scene, now_us + upload_us, out);
+	scene_step_stream(scene, passed_ms);
+	if (!scene->has_hierarchy) {
+		scene->plans_are_stale = scene->depth_is_stale = scene->fading = false;
+		return;
+	}
 	scene_update_cut(scene, passed_ms);
 	scene_list_pieces(scene);
 	bool counted = scene_take_visibility(scene, moved);
@@ -410,7 +418,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
 	GLint framebuffer = 0;
 	*out = (struct scene_frame){ .image_share = -1 };
-	if (!scene->has_hierarchy) {
+	if (!scene->has_hierarchy && !scene->stream.growth.decoder) {
 		draw_nothing(camera);
 		scene->frame_us = clock_now_us();
 		return;
@@ -434,6 +442,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	show(scene, &place, moved, changed);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
+	out->stream_triangles = scene->stream.growth.triangle_count;
 	scene_list_wants(scene);
 	/* Wanted objects may never arrive, so memory is freed without waiting for them. */
 	bool still = !moved && !changed && accumulation_is_done(&scene->accumulation);

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_labels.h"
+#include "render/scene/scene_stream.h"
 
 enum {
 	DEPTH_FACE_PX = 512,
@@ -124,6 +125,7 @@ static void forget(struct scene *scene)
 	map_clear(&scene->decoding);
 	if (scene->has_hierarchy)
 		drop_hierarchy(scene);
+	scene_drop_stream(scene);
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
@@ -167,6 +169,7 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	scene->root_bytes = root_bytes;
 	scene->want_count = 0;
 	scene->wants_are_stale = true;
+	scene->stream.over = false;
 	return 0;
 }
 
@@ -210,12 +213,13 @@ static int open_root(struct scene *scene, struct bytes bytes)
 	int rc = page_decode(&page, bytes);
 	if (rc < 0)
 		return rc;
-	rc = page.kind == PAGE_ROOT && page.child_count >= ROOT_CHILD_COUNT ? 0 : -EBADMSG;
-	if (rc == 0)
-		rc = root_page_decode(&scene->root, page.payload);
+	rc = page.kind == PAGE_ROOT ? root_page_decode(&scene->root, page.payload) : -EBADMSG;
+	if (rc == 0 && page.child_count < (uint32_t)ROOT_CHILD_COUNT + scene->root.has_stream)
+		rc = -EBADMSG;
 	if (rc == 0) {
 		scene->root_child_count =
 			page.child_count < ROOT_CHILDREN_MAX ? page.child_count : ROOT_CHILDREN_MAX;
+		scene->stream.over = !scene->root.has_stream;
 		memcpy(scene->root_child, page.children,
 		       scene->root_child_count * sizeof(*scene->root_child));
 		pool_set_lattice(scene->pool, &scene->root.lattice);
@@ -313,15 +317,29 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 		return scene->labels ? 0 : scene_open_labels(scene, bytes);
 	case OBJECT_LABELS:
 		return decode_elsewhere(scene, object, POOL_LABELS, bytes);
+	case OBJECT_STREAM:
+		return scene->stream.over || scene->stream.growth.decoder
+			       ? 0
+			       : stream_growth_open(&scene->stream.growth, bytes);
+	case OBJECT_BLOCK:
+		return stream_growth_give(&scene->stream.growth, (uint32_t)object->id, bytes);
 	}
 	return -EBADMSG;
 }
 
 void scene_refuse(struct scene *scene, struct object *object, int error)
 {
-	static const char *const names[] = { "root page",   "hierarchy page", "samples page",
-					     "patch group", "brick page",     "face page",
-					     "tile",        "labels page",    "labels" };
+	static const char *const names[] = { "root page",
+					     "hierarchy page",
+					     "samples page",
+					     "patch group",
+					     "brick page",
+					     "face page",
+					     "tile",
+					     "labels page",
+					     "labels",
+					     "stream page",
+					     "block of the streaming mesh" };
 	char hex[HASH_HEX_BYTES];
 	hash_to_hex(object->hash, hex);
 	log_error("render", "content bug: %s %s cannot be used: %s", names[object->kind], hex,

@@ -16,6 +16,7 @@
 #include "render/patches/mark.h"
 #include "render/patches/patch_buffers.h"
 #include "render/patches/pool.h"
+#include "render/patches/stream_growth.h"
 #include "render/plan/plan.h"
 #include "render/scene/scene.h"
 
@@ -29,6 +30,8 @@ enum object_kind {
 	OBJECT_TILE,  /* id: packed tile name */
 	OBJECT_LABELS_PAGE,
 	OBJECT_LABELS, /* id: group */
+	OBJECT_STREAM,
+	OBJECT_BLOCK, /* id: block of the streaming mesh */
 };
 
 enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
@@ -57,6 +60,13 @@ struct depth_task {
 	float sample_m[3];
 	uint32_t drawn; /* of the patches, the first that are */
 	uint64_t cut;   /* cut_signature when it began */
+};
+
+/* The streaming mesh, until patches are shown. */
+struct scene_stream {
+	struct stream_growth growth;
+	GLuint vertices, indices;
+	bool over; /* patches are shown: it is not wanted any more */
 };
 
 struct scene {
@@ -103,6 +113,7 @@ struct scene {
 	float filled;
 	uint32_t *group_priority; /* used while the wants are listed; owned */
 	struct repository repository;
+	struct scene_stream stream;
 
 	struct scene_effort effort; /* while the eye moves */
 	struct scene_effort used;   /* in this frame */

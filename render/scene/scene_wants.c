@@ -7,9 +7,11 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geometry/vec.h"
 #include "render/plan/plan_quality.h"
 #include "render/scene/scene_labels.h"
 #include "render/scene/scene_objects.h"
+#include "render/scene/scene_stream.h"
 
 /* A coarse tile, two levels up, stands in for 16 fine ones: it comes first where no image is shown
  * yet. */
@@ -51,7 +53,54 @@ static uint32_t least_priority(const struct scene *scene, float lasts)
 	return plan_priority(scene->options.price_px_per_kb * filled / lasts, 1000);
 }
 
-/* ---- geometry */
+/* ---- the streaming mesh, and the first cut of patches */
+
+/* Returns what a surface with this error in pixels costs the picture, on the scale of plan_worth.
+ * An image adds octaves of detail even to a rough surface; a finer surface puts them in the right
+ * place. */
+static float misplaced(float error_px)
+{
+	return 0.1f * (isfinite(error_px) ? error_px / (error_px + 8) : 1);
+}
+
+/* Returns what the stream costs the picture after so many blocks, in pixels. */
+static float stream_costs(const struct scene *scene, uint32_t blocks)
+{
+	const float *low = scene->root.box_min_m, *high = scene->root.box_max_m;
+	float centre[3], radius = vec_distance(low, high) / 2, away, pixels;
+	for (int i = 0; i < 3; i++)
+		centre[i] = (low[i] + high[i]) / 2;
+	away = vec_most(vec_distance(scene->view.eye_m, centre), radius);
+	pixels = vec_least(view_sphere_px(&scene->view, centre, radius), scene->view.picture_px);
+	return pixels * misplaced(stream_growth_error_m(&scene->stream.growth, blocks) *
+				  scene->view.focal_px / away);
+}
+
+/* Wants the base before all else, then block by block, by what each adds. */
+static void want_stream(struct scene *scene)
+{
+	const struct stream_growth *growth = &scene->stream.growth;
+	uint32_t last = scene->root_child_count - 1, most = MESSAGE_PRIORITY_INDEX - 1;
+	if (!growth->decoder) {
+		want_child_of_root(scene, OBJECT_STREAM, last, 2 * MESSAGE_PRIORITY_INDEX + 1);
+		return;
+	}
+	struct message_want place = { .page = scene->root_child[last].hash };
+	if (!scene->has_view || growth->damaged || scene_first_cut_is_here(scene))
+		return;
+	for (uint32_t i = 0; i < growth->page.child_count; i++) {
+		const struct page_child *block = &growth->page.children[i];
+		uint32_t priority = plan_priority(
+			stream_costs(scene, i) - stream_costs(scene, i + 1), block->size);
+		place.hash = block->hash;
+		place.size = block->size;
+		/* No block is of use before the one before it. */
+		most = priority < most ? priority : most - 1;
+		if (!growth->has[i])
+			want(scene, OBJECT_BLOCK, i, &place, most);
+		place.offset += block->size;
+	}
+}
 
 static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
 {
@@ -62,22 +111,31 @@ static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
 	want(scene, OBJECT_GROUP, group, &place, priority);
 }
 
-/* Returns what a surface with this error in pixels costs the picture, on the scale of plan_worth.
- * An image adds octaves of detail even to a rough surface; a finer surface puts them in the right
- * place. */
-static float misplaced(float error_px)
+/* Wants the groups that take the stream's place, all as one: what they add is what the stream still
+ * lacks. */
+static void want_first_cut(struct scene *scene)
 {
-	return 0.1f * (isfinite(error_px) ? error_px / (error_px + 8) : 1);
+	const struct stream_growth *growth = &scene->stream.growth;
+	const uint32_t count = scene_first_cut(scene);
+	uint32_t bytes = 0, priority;
+	for (uint32_t g = 0; g < count; g++)
+		bytes += scene->geometry.loaded[g] ? 0 : scene->groups[g].size;
+	priority = plan_priority(stream_costs(scene, growth->block_count), bytes);
+	for (uint32_t g = 0; g < count; g++)
+		if (!scene->geometry.loaded[g])
+			want_group(scene, g, priority + (count - g < 1000 ? count - g : 1000));
 }
 
 /* Wants groups by their own worth, and by the worth of the groups that depend on them. */
 static void want_groups(struct scene *scene)
 {
 	const struct cut *cut = &scene->cut;
-	if (!scene->geometry.loaded[0]) {
+	if (scene->stream.growth.decoder)
+		want_first_cut(scene);
+	else if (!scene->geometry.loaded[0])
 		want_group(scene, 0, MESSAGE_PRIORITY_INDEX - 1);
+	if (!scene->geometry.loaded[0])
 		return;
-	}
 	uint32_t least = least_priority(scene, lasting), *priority = scene->group_priority;
 	memset(priority, 0, scene->hierarchy.group_count * sizeof(*priority));
 	for (uint32_t i = cut->want_count; i-- > 0;) {
@@ -298,6 +356,8 @@ void scene_list_wants(struct scene *scene)
 		return;
 	}
 	bool images = scene->options.mode != SCENE_POLYGONS;
+	if (!scene->stream.over)
+		want_stream(scene);
 	if (!scene->has_hierarchy)
 		want_child_of_root(scene, OBJECT_HIERARCHY, ROOT_CHILD_HIERARCHY,
 				   2 * MESSAGE_PRIORITY_INDEX);

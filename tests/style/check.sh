@@ -64,7 +64,7 @@ is_public() {
 	*_private.h | *_parts.h) return 1 ;;
 	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import work_lock" ;;
-	pipeline/hierarchy/*) names="master master_cut normal_cone" ;;
+	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;

@@ -76,6 +76,33 @@ static void the_coarsest_is_there_at_once(void **state)
 	check_whole(world);
 }
 
+static void the_coarsest_dissolves_in_where_something_else_is_shown(void **state)
+{
+	struct world *world = *state;
+	float last = 0;
+	set(world, 15, 15);
+	world->dissolve.root = ROOT_HELD;
+	step(world, 50);
+	CHECK(world->dissolve.share[0] <= 0 && world->dissolve.share[3] <= 0);
+	CHECK(!world->dissolve.moving); /* a line that is down needs no frames */
+	world->dissolve.root = ROOT_APPEARS;
+	/* The images of any group of the cut are waited for. */
+	dissolve_hold(&world->dissolve, 2);
+	step(world, 50);
+	CHECK(world->dissolve.share[0] <= 0);
+	for (int ms = 0; ms < DISSOLVE_MS; ms += 10) {
+		step(world, 10);
+		CHECK(world->dissolve.share[0] > last);
+		CHECK(world->dissolve.share[0] - last < 0.05f);
+		/* Never the root's own patches: they may be coarser than what is replaced. */
+		CHECK(!dissolve_draws(dissolve_range(&world->dissolve, 0)));
+		last = world->dissolve.share[0];
+	}
+	step(world, 10);
+	CHECK(world->dissolve.share[0] >= 1 && !world->dissolve.moving);
+	check_whole(world);
+}
+
 static void what_comes_covers_what_goes_pixel_by_pixel(void **state)
 {
 	struct world *world = *state;
@@ -151,6 +178,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(the_coarsest_is_there_at_once, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(
+			the_coarsest_dissolves_in_where_something_else_is_shown, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(what_comes_covers_what_goes_pixel_by_pixel, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_cut_that_changes_its_mind_stays_whole, set_up,

@@ -1,0 +1,242 @@
+/* The streaming mesh in the scene: it is the first picture, grows, and dissolves into patches. */
+#include <stdio.h>
+#include <unistd.h>
+
+#include "format/picture.h"
+#include "render/display/gl.h"
+#include "render/display/headless.h"
+#include "render/scene/scene_objects.h"
+#include "tests/render/scene/little_stream.h"
+
+enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES_MAX = 3000 };
+
+static const struct camera usual_camera = {
+	.eye_m = { 10, -12, 5 },
+	.target_m = { 0, 0, 1.5f },
+	.up = { 0, 0, 1 },
+	.fov_deg = 45,
+	.near_m = 0.1f,
+	.far_m = 200,
+	.width_px = WIDTH,
+	.height_px = HEIGHT,
+};
+
+static struct little_release *release;
+static struct hash plain_root;
+static uint32_t plain_bytes;
+
+struct stage {
+	struct headless *headless;
+	struct gl_target target;
+	struct scene *scene;
+	struct scene_frame frame;
+	uint8_t seen[4 * PIXELS], before[4 * PIXELS];
+};
+
+static void raise_stage(struct stage *stage, enum scene_mode mode)
+{
+	const struct scene_options options = {
+		.mode = mode,
+		.texture_budget_bytes = 96 << 20,
+		.geometry_budget_bytes = 64 << 20,
+		.triangle_budget = 200000,
+		.patch_error_px = 1,
+		.upload_budget_us = 20000,
+	};
+
+	CHECK(headless_create(&stage->headless) == 0);
+	CHECK(gl_target_create(&stage->target, WIDTH, HEIGHT) == 0);
+	CHECK(scene_create(&stage->scene, &options) == 0);
+	CHECK(scene_open(stage->scene, release->root, release->root_bytes) == 0);
+}
+
+static void strike_stage(struct stage *stage)
+{
+	scene_destroy(stage->scene);
+	gl_target_destroy(&stage->target);
+	CHECK(gl_check("the test") == 0);
+	headless_destroy(stage->headless);
+}
+
+static void draw(struct stage *stage)
+{
+	memcpy(stage->before, stage->seen, sizeof(stage->seen));
+	gl_target_bind(&stage->target);
+	CHECK(scene_dispatch(stage->scene) == 0);
+	scene_draw(stage->scene, &usual_camera, NULL, &stage->frame);
+	CHECK(gl_target_read(&stage->target, stage->seen) == 0);
+}
+
+/* Gives what is wanted most, but no patches before the whole stream: over a line on which patches
+ * took longer, it would come first. */
+static void serve(struct stage *stage)
+{
+	const struct stream_growth *growth = &stage->scene->stream.growth;
+	struct message_want wants[64];
+	size_t count = scene_wants(stage->scene, wants, 64), i = 0;
+
+	while (i + 1 < count && growth->decoder && growth->block_count < growth->page.child_count &&
+	       !growth->damaged && scene_object(stage->scene, wants[i].hash)->kind == OBJECT_GROUP)
+		i++;
+	if (count > 0)
+		scene_give(stage->scene, wants[i].hash,
+			   little_object_bytes(release, wants[i].hash));
+}
+
+static void settle(struct stage *stage)
+{
+	for (int i = 0; i < FRAMES_MAX; i++) {
+		draw(stage);
+		if (stage->frame.settled)
+			return;
+		serve(stage);
+		usleep(3000);
+	}
+	fail_msg("not settled");
+}
+
+/* The share of pixels that differ clearly. */
+static double differing(const uint8_t *a, const uint8_t *b)
+{
+	int count = 0;
+
+	for (int i = 0; i < PIXELS; i++) {
+		int most = 0;
+
+		for (int k = 0; k < 3; k++) {
+			const int d = abs(a[4 * i + k] - b[4 * i + k]);
+
+			most = d > most ? d : most;
+		}
+		count += most > 24;
+	}
+	return (double)count / PIXELS;
+}
+
+static double covered(const uint8_t *rgba)
+{
+	int count = 0;
+
+	for (int i = 0; i < PIXELS; i++)
+		count += rgba[4 * i + 3] > 127;
+	return (double)count / PIXELS;
+}
+
+static void use_root(bool stream, bool spoiled)
+{
+	release->root = plain_root;
+	release->root_bytes = plain_bytes;
+	if (stream)
+		little_stream(release, spoiled);
+}
+
+static void the_stream_is_the_first_picture(void **state)
+{
+	static struct stage stage;
+	static uint8_t first[4 * PIXELS];
+
+	(void)state;
+	use_root(true, false);
+	raise_stage(&stage, SCENE_POLYGONS);
+	draw(&stage);
+	CHECK(stage.frame.stream_triangles == 0 && covered(stage.seen) <= 0);
+	serve(&stage); /* the root page */
+	draw(&stage);
+	serve(&stage); /* the stream page */
+	draw(&stage);
+	CHECK(stage.frame.stream_triangles > 0 && stage.frame.patches == 0);
+	CHECK(!stage.frame.settled);
+	memcpy(first, stage.seen, sizeof(first));
+	settle(&stage);
+	CHECK(stage.frame.stream_triangles == 0 && stage.frame.patches > 0);
+	CHECK(covered(stage.seen) > 0.2);
+	CHECK(fabs(covered(first) - covered(stage.seen)) < 0.03);
+	strike_stage(&stage);
+}
+
+static void nothing_pops_until_patches_are_shown(void **state)
+{
+	static struct stage stage;
+	double most = 0, coverage = 1;
+	int grown = 0, frames;
+	uint32_t last = 0;
+
+	(void)state;
+	use_root(true, false);
+	raise_stage(&stage, SCENE_POLYGONS);
+	for (frames = 0; frames < FRAMES_MAX && !stage.frame.settled; frames++) {
+		const bool first = stage.frame.stream_triangles == 0 && stage.frame.patches == 0;
+
+		draw(&stage);
+		if (!first) {
+			const double changed = differing(stage.before, stage.seen);
+
+			most = changed > most ? changed : most;
+			coverage = covered(stage.seen) < coverage ? covered(stage.seen) : coverage;
+		}
+		grown += stage.frame.stream_triangles > last;
+		last = stage.frame.stream_triangles;
+		/* An object every tenth of a second or so, as over a slow line. */
+		if (frames % 16 == 0)
+			serve(&stage);
+		usleep(8000);
+	}
+	CHECK(stage.frame.settled);
+	CHECK(grown >= 3); /* the base and two blocks at least */
+	if (most > 0.04)
+		fail_msg("%.1f %% of the pixels change from one frame to the next", 100 * most);
+	CHECK(coverage > covered(stage.seen) - 0.01);
+	strike_stage(&stage);
+}
+
+static void the_settled_picture_does_not_depend_on_it(void **state)
+{
+	static struct stage stage;
+	static uint8_t with[4 * PIXELS];
+	struct message_want wants[8];
+
+	(void)state;
+	use_root(true, false);
+	raise_stage(&stage, SCENE_LUMIGRAPH);
+	settle(&stage);
+	CHECK(scene_wants(stage.scene, wants, 8) == 0);
+	memcpy(with, stage.seen, sizeof(with));
+	strike_stage(&stage);
+	use_root(false, false);
+	raise_stage(&stage, SCENE_LUMIGRAPH);
+	settle(&stage);
+	if (differing(with, stage.seen) > 0.01)
+		fail_msg("%.2f %% of the pixels differ", 100 * differing(with, stage.seen));
+	strike_stage(&stage);
+}
+
+static void a_damaged_block_is_reported_and_patches_come_all_the_same(void **state)
+{
+	static struct stage stage;
+
+	(void)state;
+	use_root(true, true);
+	raise_stage(&stage, SCENE_POLYGONS);
+	settle(&stage);
+	CHECK(scene_refused(stage.scene) == 1);
+	CHECK(stage.frame.stream_triangles == 0 && stage.frame.patches > 0);
+	strike_stage(&stage);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_stream_is_the_first_picture),
+		cmocka_unit_test(nothing_pops_until_patches_are_shown),
+		cmocka_unit_test(the_settled_picture_does_not_depend_on_it),
+		cmocka_unit_test(a_damaged_block_is_reported_and_patches_come_all_the_same),
+	};
+	int rc;
+
+	release = little_release_make(2);
+	plain_root = release->root;
+	plain_bytes = release->root_bytes;
+	rc = cmocka_run_group_tests(tests, NULL, NULL);
+	little_release_free(release);
+	return rc;
+}
