@@ -19,7 +19,8 @@ static void copy(cJSON *to, const cJSON *from, const char *key)
 
 static void add_part(cJSON *rows, const cJSON *part)
 {
-	static const char *const keys[] = { "title", "caption", "reading", "credits", "thumbnail" };
+	static const char *const keys[] = { "title",   "caption",   "reading",
+					    "credits", "thumbnail", "documents" };
 	const cJSON *id = cJSON_GetObjectItemCaseSensitive(part, "id"),
 		    *kind = cJSON_GetObjectItemCaseSensitive(
 			    cJSON_GetObjectItemCaseSensitive(part, "region"), "kind");
@@ -42,7 +43,7 @@ static void add_part(cJSON *rows, const cJSON *part)
 
 struct lister {
 	const struct content *content;
-	cJSON *parts, *pictures;
+	cJSON *parts, *pictures, *documents;
 };
 
 static cJSON *row_of(const cJSON *parts, const char *id, size_t bytes)
@@ -59,6 +60,22 @@ static cJSON *row_of(const cJSON *parts, const char *id, size_t bytes)
 	return NULL;
 }
 
+/* Pages that are of no part: documents. */
+static cJSON *add_document_row(cJSON *documents, const char *id, size_t bytes)
+{
+	cJSON *row = row_of(documents, id, bytes);
+	char name[DOCUMENT_NAME_BYTES];
+
+	if (row)
+		return row;
+	snprintf(name, sizeof(name), "%.*s", (int)bytes, id);
+	row = cJSON_CreateObject();
+	cJSON_AddStringToObject(row, "id", name);
+	cJSON_AddObjectToObject(row, "pages");
+	cJSON_AddItemToArray(documents, row);
+	return row;
+}
+
 /* A page, its recording, or the words of that. */
 static void add_page(const struct lister *lister, const char *name, const char *tag)
 {
@@ -67,6 +84,9 @@ static void add_page(const struct lister *lister, const char *name, const char *
 						{ ".vtt", "words" } };
 	const char *id = name + strlen("pages/"), *dot = strchr(id, '.');
 	const cJSON *row = dot ? row_of(lister->parts, id, (size_t)(dot - id)) : NULL;
+
+	if (dot && !row)
+		row = add_document_row(lister->documents, id, (size_t)(dot - id));
 
 	for (uint32_t n = 0; row && n < lister->content->language_count; n++) {
 		const char *language = lister->content->languages[n];
@@ -77,7 +97,7 @@ static void add_page(const struct lister *lister, const char *name, const char *
 			    strcmp(dot + 1 + bytes, kinds[k][0]) == 0)
 				cJSON_AddStringToObject(
 					cJSON_GetObjectItemCaseSensitive(row, kinds[k][1]),
-					language, tag);
+					language, tag); /* documents have pages alone */
 	}
 }
 
@@ -118,7 +138,8 @@ static void add_tours(struct site *site, cJSON *rows)
 static int fill(struct site *site, cJSON *root, struct diagnostics *diagnostics)
 {
 	struct lister lister = { &site->content, cJSON_AddArrayToObject(root, "parts"),
-				 cJSON_AddArrayToObject(root, "pictures") };
+				 cJSON_AddArrayToObject(root, "pictures"),
+				 cJSON_AddArrayToObject(root, "documents") };
 	cJSON *languages = cJSON_AddArrayToObject(root, "languages");
 	struct diagnostics problems = { 0 };
 	struct parts_file parts;

@@ -136,6 +136,8 @@ static int note_page(const struct page_save *save, cJSON *part, struct diagnosti
 	struct page_count others = { id, save->name, 0 };
 	int rc;
 
+	if (!part) /* a document */
+		return 0;
 	if (save->html.data) {
 		cJSON_DeleteItemFromObjectCaseSensitive(part, "page");
 		return is_without;
@@ -188,6 +190,15 @@ static void answer_saved(struct page_save *save, const char *tag)
 	api_send_json(save->response, json);
 }
 
+/* A page of no part, which parts may have among their documents. */
+static bool is_document(const struct api_request *request)
+{
+	const char *kind = api_query(request, "kind"), *id = api_parameter(request, "id");
+
+	return kind && strcmp(kind, "document") == 0 &&
+	       strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-_") == strlen(id);
+}
+
 static void save_page(struct page_save *save, const struct parts_file *parts)
 {
 	struct diagnostics problems = { .max = CONTENT_PROBLEMS_MAX };
@@ -196,7 +207,7 @@ static void save_page(struct page_save *save, const struct parts_file *parts)
 	struct buffer now;
 	int rc;
 
-	if (!part) {
+	if (!part && !is_document(save->request)) {
 		api_fail(save->response, 404,
 			 "there is no such part: somebody may have removed it");
 		return;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const char *const by_language[] = { "title", "caption", "reading" };
+static const char documents[] = "documents"; /* names, each on a line */
 static const char *const credits[] = { "creator", "contributor", "publisher", "date",    "source",
 				       "rights",  "subject",     "coverage",  "relation" };
 
@@ -37,12 +38,13 @@ static void put_value(struct buffer *out, const cJSON *value)
 	}
 }
 
-/* Returns what a text becomes, owned; several lines are a list. NULL: no memory. */
-static cJSON *make_value(const char *text)
+/* Returns what a text becomes, owned; several lines, and the names of documents, are a list. NULL:
+ * no memory. */
+static cJSON *make_value(const char *key, const char *text)
 {
 	cJSON *list, *item;
 
-	if (!strchr(text, '\n'))
+	if (!strchr(text, '\n') && strcmp(key, documents) != 0)
 		return cJSON_CreateString(text);
 	list = cJSON_CreateArray();
 	while (list && *text) {
@@ -80,7 +82,7 @@ static int find_place(cJSON *part, const struct part_change *change, struct plac
 	*out = (struct place){ part, NULL, field, change->language };
 	if (is_one_of(field, by_language, ARRAY_COUNT(by_language)) && has_language)
 		return 0;
-	if (strcmp(field, "thumbnail") == 0 && !has_language)
+	if ((strcmp(field, "thumbnail") == 0 || strcmp(field, documents) == 0) && !has_language)
 		return 0;
 	if (is_one_of(field, credits, ARRAY_COUNT(credits))) {
 		out->outer = "credits";
@@ -110,7 +112,7 @@ static int set(cJSON *object, const char *key, const char *text)
 		cJSON_DeleteItemFromObjectCaseSensitive(object, key);
 		return 0;
 	}
-	return json_set(object, key, make_value(text)) ? 0 : -ENOMEM;
+	return json_set(object, key, make_value(key, text)) ? 0 : -ENOMEM;
 }
 
 static int write_place(cJSON *part, struct place *place, const char *text)

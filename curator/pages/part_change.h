@@ -8,8 +8,8 @@
 
 /* All borrowed. */
 struct part_change {
-	/* "title", "caption", "reading", "thumbnail", "creator" or another element of the credits.
-	 */
+	/* "title", "caption", "reading", "thumbnail", "documents" (their names, each on a line),
+	 * "creator" or another element of the credits. */
 	const char *field;
 	const char *language;  /* "": it has none, as "thumbnail" */
 	const char *from, *to; /* "": there is none */

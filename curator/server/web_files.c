@@ -44,6 +44,7 @@
 	FILE(preview, "/preview.js", "preview.js", SCRIPT, true)                                   \
 	FILE(tours, "/tours", "tours.html", HTML, false)                                           \
 	FILE(tours_script, "/tours.js", "tours.js", SCRIPT, true)                                  \
+	FILE(documents, "/documents.js", "documents.js", SCRIPT, true)                             \
 	FILE(sound, "/sound.js", "sound.js", SCRIPT, true)                                         \
 	FILE(stop_list, "/stop_list.js", "stop_list.js", SCRIPT, true)                             \
 	FILE(tours_style, "/tours.css", "tours.css", STYLE, true)                                  \

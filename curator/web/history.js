@@ -112,7 +112,7 @@ function heading(text) {
   return Object.assign(document.createElement("h2"), { textContent: text });
 }
 
-const FIELD_WORDS = { title: "Title", caption: "Caption", reading: "Reading", thumbnail: "Picture" };
+const FIELD_WORDS = { title: "Title", caption: "Caption", reading: "Reading", thumbnail: "Picture", documents: "Documents" };
 
 // One text of the card at one time: what was changed of it, and going back to it. now: the text as it is saved.
 function fieldRow(change, now, set) {

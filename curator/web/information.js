@@ -4,6 +4,7 @@ import { showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
 import { clean, pictureAddress } from "./clean.js";
+import { showDocuments } from "./documents.js";
 import { allowEditing, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
 import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
@@ -13,11 +14,14 @@ import { sendSound, showSound, soundKind } from "./sound.js";
 
 const byId = id => document.getElementById(id);
 const FIELDS = ["title", "caption", "reading"];
-let information = { parts: [], languages: [], tours: [], problems: [], pictures: [] };
+let information = { parts: [], languages: [], tours: [], problems: [], pictures: [], documents: [] };
 let part = null, language = "", tag = "", loadedText = "", loaded = {}, dirty = false, panel = "preview", saving = false;
 
-const pageName = () => `pages/${part.id}.${language}.html`;
-const pageAddress = () => `/api/pages/${part.id}.${language}`;
+let shown = ""; // the document in the editor; "": the part's own page
+const pageId = () => shown || part.id;
+const isPartsOwn = id => information.parts.some(one => one.id === id);
+const pageName = () => `pages/${pageId()}.${language}.html`;
+const pageAddress = () => `/api/pages/${pageId()}.${language}${isPartsOwn(pageId()) ? "" : "?kind=document"}`;
 
 function tell(text, good = false) {
   byId("message").textContent = text;
@@ -102,6 +106,7 @@ function arrowTabs(list) {
 async function open(id, code = language) {
   const other = part?.id !== id || code !== language;
   if (dirty && other && !confirm("What you wrote is not saved. Leave it?")) return;
+  if (part?.id !== id) shown = "";
   part = information.parts.find(one => one.id === id);
   language = code;
   byId("nothing").hidden = true;
@@ -121,7 +126,30 @@ async function open(id, code = language) {
   showPanel();
 }
 
+// Says which text is in the editor, unless it is the part's own.
+function showWhich() {
+  const parts = information.parts.filter(one => one.documents?.includes(shown) || one.id === shown).map(one => titleOf(one, information.languages));
+  byId("document").hidden = !shown;
+  byId("document").textContent = `Below is “${shown}”, which is on the page of: ${parts.join(", ") || "no part"}.`;
+}
+
+async function editDocument(id) {
+  const wanted = id === part.id ? "" : id;
+  if (wanted === shown) return;
+  if (dirty && !confirm("What you wrote is not saved. Leave it?")) return;
+  shown = wanted;
+  await loadPage();
+  showPanel();
+}
+
+async function setDocuments(of, list) {
+  await changeFiles(() => ask("POST", `/api/parts/${of.id}/texts`, { changes: [{ field: "documents", language: "", from: (of.documents || []).join("\n"), to: list.join("\n") }] }));
+  if (shown && !part.documents?.includes(shown)) await editDocument(part.id);
+  showWhich();
+}
+
 async function loadPage() {
+  showWhich();
   const page = await ask("GET", pageAddress());
   tag = page.tag;
   setPage(page.html || "<p><br></p>");
@@ -229,7 +257,7 @@ async function setField(change) {
   }
 }
 
-async function changeSound(work) {
+async function changeFiles(work) {
   tell("");
   byId("state").textContent = "Sending …";
   try {
@@ -267,9 +295,11 @@ function showPanel() {
   }
   if (!part) return;
   if (panel === "history") showHistory(part, language, pageName(), restore, setField);
-  if (panel === "sound") showSound(part, language, changeSound);
+  if (panel === "documents") showDocuments({ part, parts: information.parts, documents: information.documents, titleOf: one => titleOf(one, information.languages),
+    shown: pageId(), language, edit: editDocument, set: setDocuments, done: changeFiles });
+  if (panel === "sound") showSound(part, language, changeFiles);
   if (panel === "about") showAbout(part, information.credits, language, setField, remove);
-  if (panel === "preview") showPreview(part, language, dirty ? pageText() : null);
+  if (panel === "preview") showPreview(part, language, dirty && !shown ? pageText() : null);
 }
 
 // ---- files that are dropped, links, pictures
@@ -278,7 +308,7 @@ async function takeFiles(files) {
   for (const file of files) {
     try {
       if (soundKind(file)) {
-        await changeSound(() => sendSound(soundKind(file), part, language, file));
+        await changeFiles(() => sendSound(soundKind(file), part, language, file));
         continue;
       }
       if (/^image\//.test(file.type)) {

@@ -20,6 +20,8 @@ static void part_finish(struct draft_part *part)
 	free(part->faces_file);
 	free(part->faces_scan);
 	free(part->thumbnail);
+	for (uint32_t i = 0; i < part->document_count; i++)
+		free(part->documents[i]);
 	for (uint32_t i = 0; i < part->credit_count; i++)
 		free(part->credits[i].value);
 	for (size_t i = 0; i < INFO_LANGUAGES_MAX; i++) {

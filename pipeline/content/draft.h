@@ -23,9 +23,10 @@ struct draft_spoken {
 };
 
 struct draft_page {
-	char *html; /* owned, null-terminated; NULL: none */
+	char *html; /* owned, null-terminated; NULL: the part has no page of its own */
 	size_t size;
-	struct buffer article; /* made of html; empty if html has a fault */
+	bool is_there;         /* it has one, or further documents */
+	struct buffer article; /* made of html and of these; empty if one has a fault */
 	uint32_t *pictures;    /* owned; indices into draft.pictures, in order of use, each once */
 	uint32_t picture_count, picture_room;
 	struct draft_spoken spoken;
@@ -38,12 +39,16 @@ struct draft_credit {
 	char *value;         /* owned */
 };
 
-enum { DRAFT_CREDITS_MAX = 64 };
+enum { DRAFT_CREDITS_MAX = 64, DRAFT_DOCUMENTS_MAX = 16 };
 
 struct draft_part {
 	char *id;
-	unsigned line; /* line in parts.json */
-	bool without_page;
+	unsigned line;     /* line in parts.json */
+	bool without_page; /* in no language, neither of its own nor of further documents */
+	bool expects_page; /* of its own, or a further document, in each language */
+	/* Names of the documents that follow its own page; owned. */
+	char *documents[DRAFT_DOCUMENTS_MAX];
+	uint32_t document_count;
 	/* Zero until draft_place_faces, if the region is a list of faces. */
 	struct region region;
 	float anchor_m[3];

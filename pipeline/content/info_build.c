@@ -195,7 +195,7 @@ static void write_content(struct writer *w, int64_t information, uint32_t langua
 	const struct draft_page *page = &part->pages[language];
 	const int64_t content_id = content_id_of(information, language);
 
-	if (!part->titles[language] && !part->captions[language] && !page->html)
+	if (!part->titles[language] && !part->captions[language] && !page->is_there)
 		return;
 	prepare(w, "INSERT INTO information_contents VALUES(?,?,?, ?,?,?,?)");
 	bind_int(w, content_id);
@@ -240,7 +240,7 @@ static void write_information(struct writer *w, int64_t id, const struct draft_p
 	bool has_page = false;
 
 	for (uint32_t i = 0; i < language_count; i++)
-		has_page |= part->pages[i].html != NULL;
+		has_page |= part->pages[i].is_there;
 	prepare(w, "INSERT INTO information VALUES(?,?,?)");
 	bind_int(w, id);
 	bind_text(w, has_page ? "page" : "card");
@@ -492,7 +492,7 @@ static void count(struct info_built *out, const struct draft *draft)
 	}
 	for (uint32_t p = 0; p < draft->part_count; p++)
 		for (uint32_t i = 0; i < INFO_LANGUAGES_MAX; i++)
-			out->page_count += draft->parts[p].pages[i].html != NULL;
+			out->page_count += draft->parts[p].pages[i].is_there;
 }
 
 bool draft_languages_are_sane(const struct info_build_options *options)

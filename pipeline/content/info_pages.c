@@ -263,15 +263,19 @@ static int read_page_file(struct page_check *check)
 	return 0;
 }
 
-/* Makes the article. What has a fault is not published, so it needs none. */
-static int compile_page(struct page_check *check)
+static int check_page(struct page_check *check)
+{
+	return check_tags(check) ? parse_page(check) : 0;
+}
+
+/* Makes the article of all texts. What has a fault is not published, so it needs none. */
+static int compile_page(struct page_check *check, const struct bytes *texts, uint32_t count)
 {
 	struct draft_page *page = check->page;
-	const struct bytes html = { (const uint8_t *)page->html, page->size };
 	int rc;
 
 	buffer_init(&page->article, ARTICLE_BYTES_MAX);
-	rc = page_compile(&page->article, html);
+	rc = page_compile_all(&page->article, texts, count);
 	if (rc == -EFBIG)
 		diagnostics_add(
 			check->draft->diagnostics, -EINVAL, check->file, 0,
@@ -283,41 +287,98 @@ static int compile_page(struct page_check *check)
 	return rc == -ENOMEM ? rc : 0;
 }
 
-static int check_page(struct page_check *check)
+static void name_page(const struct draft *draft, const char *name, uint32_t language,
+		      char file[INFO_ID_BYTES_MAX + 40])
 {
-	const uint32_t errors = check->draft->diagnostics->error_count;
-	int rc = check_tags(check) ? parse_page(check) : 0;
+	snprintf(file, INFO_ID_BYTES_MAX + 40, "pages/%.64s.%.16s.html", name,
+		 draft->options->languages[language]);
+}
 
-	if (rc == 0 && check->draft->diagnostics->error_count == errors)
-		rc = compile_page(check);
+/* Reads a document that follows a page, which gets its pictures too. */
+static int read_document(struct page_check *of, const char *name, uint32_t language,
+			 struct draft_page *out)
+{
+	char file[INFO_ID_BYTES_MAX + 40];
+	struct page_check check = { of->draft, out, file, 0 };
+	int rc;
+
+	name_page(of->draft, name, language, file);
+	rc = read_page_file(&check);
+	if (rc == 0 && out->html)
+		rc = check_page(&check);
+	if (rc == 0 && of->page->picture_count + out->picture_count > INFO_PAGE_PICTURES_MAX) {
+		diagnostics_add(of->draft->diagnostics, -EINVAL, of->file, 0,
+				"more than %d pictures with those of its documents: name fewer",
+				INFO_PAGE_PICTURES_MAX);
+		return 0;
+	}
+	for (uint32_t n = 0; rc == 0 && n < out->picture_count; n++)
+		rc = note_picture(of, (int)out->pictures[n]);
+	return rc;
+}
+
+/* Reads a part's page in a language: its own, and the documents that follow. found notes those that
+ * are there. */
+static int read_part_page(struct draft *draft, struct draft_part *part, uint32_t language,
+			  bool found[DRAFT_DOCUMENTS_MAX])
+{
+	const uint32_t errors = draft->diagnostics->error_count;
+	struct draft_page further[DRAFT_DOCUMENTS_MAX] = { 0 };
+	struct bytes texts[1 + DRAFT_DOCUMENTS_MAX];
+	struct draft_page *page = &part->pages[language];
+	char file[INFO_ID_BYTES_MAX + 40];
+	struct page_check check = { draft, page, file, 0 };
+	uint32_t count = 0;
+	int rc;
+
+	name_page(draft, part->id, language, file);
+	rc = read_page_file(&check);
+	if (rc == 0 && page->html) {
+		texts[count++] = (struct bytes){ (const uint8_t *)page->html, page->size };
+		rc = check_page(&check);
+	}
+	for (uint32_t n = 0; rc == 0 && n < part->document_count; n++) {
+		rc = read_document(&check, part->documents[n], language, &further[n]);
+		found[n] |= further[n].html != NULL;
+		if (further[n].html)
+			texts[count++] =
+				(struct bytes){ (const uint8_t *)further[n].html, further[n].size };
+	}
+	page->is_there = count > 0;
+	if (rc == 0 && page->is_there && draft->diagnostics->error_count == errors)
+		rc = compile_page(&check, texts, count);
+	else if (rc == 0 && !page->is_there && part->expects_page)
+		diagnostics_add(draft->diagnostics, language == 0 ? -EINVAL : 0, file, 0,
+				language == 0 ? "is missing: write it, or give the part "
+						"\"page\": false in parts.json"
+					      : "is missing: the page in another language is "
+						"shown instead");
+	for (uint32_t n = 0; n < part->document_count; n++) {
+		free(further[n].html);
+		free(further[n].pictures);
+	}
 	return rc;
 }
 
 static int read_part_pages(struct draft *draft, struct draft_part *part)
 {
-	const struct info_build_options *options = draft->options;
+	bool found[DRAFT_DOCUMENTS_MAX] = { false };
 
-	for (uint32_t i = 0; i < options->language_count; i++) {
-		char file[INFO_ID_BYTES_MAX + 40];
-		struct page_check check = { draft, &part->pages[i], file, 0 };
-		int rc;
+	for (uint32_t i = 0; i < draft->options->language_count; i++) {
+		int rc = read_part_page(draft, part, i, found);
 
-		snprintf(file, sizeof(file), "pages/%.64s.%.16s.html", part->id,
-			 options->languages[i]);
-		rc = read_page_file(&check);
-		if (rc == 0 && part->pages[i].html)
-			rc = check_page(&check);
-		else if (rc == 0 && !part->without_page)
-			diagnostics_add(draft->diagnostics, i == 0 ? -EINVAL : 0, file, 0,
-					i == 0 ? "is missing: write it, or give the part "
-						 "\"page\": false in parts.json"
-					       : "is missing: the page in another language is "
-						 "shown instead");
 		if (rc == 0)
 			rc = spoken_text_read(draft, part, i);
 		if (rc < 0)
 			return rc;
 	}
+	for (uint32_t n = 0; n < part->document_count; n++)
+		if (!found[n])
+			diagnostics_add(draft->diagnostics, -EINVAL, "parts.json", part->line,
+					"part \"%s\": the document \"%s\" is not there: write "
+					"pages/%s.%s.html, or take its name away",
+					part->id, part->documents[n], part->documents[n],
+					draft->options->languages[0]);
 	return 0;
 }
 
@@ -327,22 +388,34 @@ static bool has_known_ending(const char *ending)
 	       strcmp(ending, ".vtt") == 0;
 }
 
-static bool is_expected(const struct draft *draft, const char *name)
+/* Whether a file is a text in a language of the release, of a page of that name. */
+static bool is_of(const struct draft *draft, const char *file, const char *name)
 {
 	const struct info_build_options *options = draft->options;
+	const size_t size = strlen(name);
 
+	if (strncmp(file, name, size) != 0 || file[size] != '.')
+		return false;
+	for (uint32_t i = 0; i < options->language_count; i++) {
+		const size_t n = strlen(options->languages[i]);
+
+		if (strncmp(file + size + 1, options->languages[i], n) == 0 &&
+		    has_known_ending(file + size + 1 + n))
+			return true;
+	}
+	return false;
+}
+
+static bool is_expected(const struct draft *draft, const char *file)
+{
 	for (uint32_t p = 0; p < draft->part_count; p++) {
-		size_t size = strlen(draft->parts[p].id);
+		const struct draft_part *part = &draft->parts[p];
 
-		if (strncmp(name, draft->parts[p].id, size) != 0 || name[size] != '.')
-			continue;
-		for (uint32_t i = 0; i < options->language_count; i++) {
-			size_t n = strlen(options->languages[i]);
-
-			if (strncmp(name + size + 1, options->languages[i], n) == 0 &&
-			    has_known_ending(name + size + 1 + n))
+		if (is_of(draft, file, part->id))
+			return true;
+		for (uint32_t n = 0; n < part->document_count; n++)
+			if (is_of(draft, file, part->documents[n]))
 				return true;
-		}
 	}
 	return false;
 }

@@ -282,6 +282,39 @@ static int read_thumbnail(struct part_reader *r)
 	return r->part->thumbnail_picture == -ENOMEM ? -ENOMEM : 0;
 }
 
+/* The documents that follow the part's own page, by name. */
+static int read_documents(struct part_reader *r)
+{
+	const cJSON *list = cJSON_GetObjectItemCaseSensitive(r->json, "documents"), *item;
+	struct draft_part *part = r->part;
+
+	if (list && (!cJSON_IsArray(list) || cJSON_GetArraySize(list) > DRAFT_DOCUMENTS_MAX))
+		report_part(r, "part \"%s\": \"documents\" must be a list of at most %d names",
+			    part_name(r), DRAFT_DOCUMENTS_MAX);
+	cJSON_ArrayForEach(item, list)
+	{
+		const char *name = cJSON_GetStringValue(item);
+		bool is_new = name && strcmp(name, part->id) != 0;
+
+		for (uint32_t n = 0; is_new && n < part->document_count; n++)
+			is_new = strcmp(part->documents[n], name) != 0;
+		if (part->document_count == DRAFT_DOCUMENTS_MAX)
+			break;
+		if (!is_new || !draft_is_id(name)) {
+			report_part(r,
+				    "part \"%s\": \"documents\" has \"%.70s\": name other pages, "
+				    "each once, with a-z, 0-9, - and _",
+				    part_name(r), name ? name : "?");
+			continue;
+		}
+		part->documents[part->document_count] = strdup(name);
+		if (!part->documents[part->document_count])
+			return -ENOMEM;
+		part->document_count++;
+	}
+	return 0;
+}
+
 static int read_part(struct draft *draft, const cJSON *json, unsigned line, const cJSON *credits)
 {
 	struct draft_part *part = &draft->parts[draft->part_count];
@@ -293,8 +326,11 @@ static int read_part(struct draft *draft, const cJSON *json, unsigned line, cons
 	if (rc < 0)
 		return rc;
 	draft->part_count++; /* from here on draft_finish frees it */
-	part->without_page = cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
-	rc = read_region(&reader);
+	part->expects_page = !cJSON_IsFalse(cJSON_GetObjectItemCaseSensitive(json, "page"));
+	rc = read_documents(&reader);
+	part->without_page = !part->expects_page && part->document_count == 0;
+	if (rc == 0)
+		rc = read_region(&reader);
 	if (rc == 0)
 		rc = read_texts(&reader, "title", part->titles, true);
 	if (rc == 0)

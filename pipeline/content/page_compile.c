@@ -210,10 +210,9 @@ static int read_tree(xmlDoc **out, struct bytes html)
 	return rc;
 }
 
-int page_compile(struct buffer *out, struct bytes html)
+static int add_text(struct compiler *compiler, struct bytes html)
 {
 	struct inherited in = { .look = { .link = -1, .style = ARTICLE_BODY }, .list_number = -1 };
-	struct compiler compiler = { .row_count = 0 };
 	xmlDoc *doc;
 	int rc;
 
@@ -224,11 +223,30 @@ int page_compile(struct buffer *out, struct bytes html)
 	rc = read_tree(&doc, html);
 	if (rc < 0)
 		return rc;
-	article_builder_init(&compiler.builder);
+	article_builder_close(&compiler->builder);
+	if (article_builder_count(&compiler->builder) > 0)
+		article_builder_rule(&compiler->builder, &in.look);
 	if (doc)
-		walk(&compiler, xmlDocGetRootElement(doc), &in, 0);
+		walk(compiler, xmlDocGetRootElement(doc), &in, 0);
 	xmlFreeDoc(doc);
-	rc = article_builder_encode(&compiler.builder, out);
+	return 0;
+}
+
+int page_compile_all(struct buffer *out, const struct bytes *texts, uint32_t count)
+{
+	struct compiler compiler = { .row_count = 0 };
+	int rc = 0;
+
+	article_builder_init(&compiler.builder);
+	for (uint32_t n = 0; rc == 0 && n < count; n++)
+		rc = add_text(&compiler, texts[n]);
+	if (rc == 0)
+		rc = article_builder_encode(&compiler.builder, out);
 	article_builder_finish(&compiler.builder);
 	return rc;
+}
+
+int page_compile(struct buffer *out, struct bytes html)
+{
+	return page_compile_all(out, &html, 1);
 }

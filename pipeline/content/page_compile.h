@@ -9,5 +9,7 @@
 /* Appends the encoded article to *out. -EBADMSG: not UTF-8, or neither text nor picture in it.
  * -EFBIG: html is larger than HTML_BYTES_MAX, or gives more than an article may have. -ENOMEM. */
 must_check int page_compile(struct buffer *out, struct bytes html);
+/* The same of several texts, one below the other with a rule between them. */
+must_check int page_compile_all(struct buffer *out, const struct bytes *texts, uint32_t count);
 
 #endif

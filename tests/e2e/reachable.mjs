@@ -129,7 +129,7 @@ async function write() {
   await tabTo("#tab-preview");
   await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 3`, "three previews");
   await judge("write");
-  for (const panel of ["history", "sound", "about"]) {
+  for (const panel of ["history", "documents", "sound", "about"]) {
     await press("ArrowRight");
     await browser.until(`!document.querySelector("#${panel}").hidden && document.querySelector("#${panel}").children.length > 1`, panel);
     if (panel === "history") {

@@ -77,6 +77,33 @@ async function speaksAndGoesBack(browser) {
   assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true, "it is saved");
 }
 
+// A new document at one part, then at two; a page of another part beside it; their order; back to the part's own page.
+async function assigns(browser) {
+  const listed = id => browser.evaluate(`fetch("/api/information").then(answer => answer.json()).then(all => all.parts.find(one => one.id === "${id}").documents)`);
+  await browser.click("#tab-documents");
+  await browser.until(`document.querySelector("#documents li")`, "the panel");
+  await browser.evaluate(`document.querySelector("#documents input[maxlength]").focus()`);
+  await browser.type("Works of restoration");
+  await browser.click("#documents > .line:last-child button");
+  await browser.until(`document.querySelector("#page h2")?.textContent === "Works of restoration" && document.querySelectorAll("#documents li").length === 2`, "a new document");
+  assert.match(await browser.evaluate(`document.querySelector("#document").textContent`), /works-of-restoration.*The guardian lions/);
+  await browser.evaluate(`(() => { const page = document.querySelector("#page"); page.focus(); getSelection().selectAllChildren(page); getSelection().collapseToEnd(); })()`);
+  await browser.type(", begun in 1998");
+  await browser.key("s", CONTROL, 83);
+  await saved(browser);
+  await browser.evaluate(`[...document.querySelectorAll("#documents li:nth-child(2) .check")].find(one => one.textContent === "The eastern stairs").querySelector("input").click()`);
+  await browser.until(`/At 2 parts/.test(document.querySelector("#documents li:nth-child(2) summary").textContent)`, "two parts");
+  await browser.evaluate(`document.querySelector("#documents select").value = "naga"; document.querySelector("#documents > .line button").click()`);
+  await browser.until(`document.querySelectorAll("#documents li").length === 3`, "another part's page");
+  await browser.click("#documents li:nth-child(3) button[aria-label*=before]");
+  await browser.until(`/naga/i.test(document.querySelector("#documents li:nth-child(2) strong").textContent)`, "the order");
+  assert.deepEqual(await listed("lions"), ["naga", "works-of-restoration"]);
+  assert.deepEqual(await listed("stairs"), ["works-of-restoration"]);
+  await browser.picture(`${folder}/documents.png`);
+  await browser.click("#documents li:nth-child(1) button");
+  await browser.until(`document.querySelector("#document").hidden && document.querySelector("#page h1")`, "the part's own page");
+}
+
 async function meets(ana, petra) {
   await open(petra, "lions.en");
   await caret(petra, 0);
@@ -112,6 +139,7 @@ try {
   await pastes(ana);
   await changesCaption(ana);
   await speaksAndGoesBack(ana);
+  await assigns(ana);
   await meets(ana, petra);
   await previews(ana);
   await ana.picture(`${folder}/writing.png`);
