@@ -14,6 +14,7 @@
 #include "base/resource_usage.h"
 #include "pipeline/import/alignment.h"
 #include "pipeline/import/import.h"
+#include "pipeline/octree/budget_mesh.h"
 #include "pipeline/octree/mesh_ply.h"
 #include "pipeline/octree/reconstruct.h"
 
@@ -32,6 +33,9 @@ static const char help[] =
 	"  --depth N       instead: 2^N leaf cubes along the longest side, 1 to 16\n"
 	"  --closed        close all holes, so that the surface is watertight (default: it is open\n"
 	"                  where nothing was scanned)\n"
+	"  --budget-triangles N\n"
+	"                  with --closed: at most N triangles, and as near to N as a watertight surface\n"
+	"                  can be: detail where it adds most area, by the marching-cube octree\n"
 	"  --keep-small    keep parts with less than a thousandth of the largest one's triangles, which\n"
 	"                  are left out as noise otherwise\n"
 	"  --unit UNIT     unit of the files: m (default), cm, mm, in, or its length in metres\n"
@@ -43,11 +47,13 @@ static const char help[] =
 	"\n"
 	"Examples:\n"
 	"  gopura-content reconstruct happyStandRight.conf --cell 0.5 --closed --out buddha.ply\n"
+	"  gopura-content reconstruct scans.aln --closed --budget-triangles 50000 --out small.ply\n"
 	"  gopura-content reconstruct --unit mm --depth 9 --out wall.ply wall-*.ply\n";
 
 struct settings {
 	struct reconstruct_options reconstruct;
 	double cell_mm, metres_per_unit;
+	uint32_t budget; /* triangles; 0: all */
 	const char *out;
 };
 
@@ -129,8 +135,36 @@ static void print_report(const struct reconstruct_report *report, const struct i
 	       (double)usage.own_bytes / 1e6);
 }
 
+/* Replaces the mesh by one with at most the budget of triangles. */
+static int meet_budget(struct mesh *mesh, struct budget_leaves *leaves,
+		       struct reconstruct_report *report, const struct settings *settings)
+{
+	const bool has_colour = mesh->colours != NULL;
+	const uint32_t all = mesh->triangle_count;
+	struct lod_model model = { 0 };
+	int64_t began_us = clock_now_us(), made_us;
+	int rc = budget_model_create(&model, leaves, mesh, report);
+
+	mesh_finish(mesh);
+	made_us = clock_now_us();
+	if (rc == 0)
+		rc = budget_mesh_make(mesh, &model, report, has_colour, settings->budget);
+	if (rc == -ENODATA)
+		fprintf(stderr, "no surface has only %u triangles; allow more\n", settings->budget);
+	else if (rc < 0)
+		fprintf(stderr, "octree: %s; choose larger leaf cubes\n", strerror(-rc));
+	else
+		printf("budget: %u of %u triangles; octree %.2f s, mesh %.1f ms\n",
+		       mesh->triangle_count, all, (double)(made_us - began_us) / 1e6,
+		       (double)(clock_now_us() - made_us) / 1e3);
+	lod_model_finish(&model);
+	return rc == 0 ? reconstruct_judge(mesh, report) : rc;
+}
+
 static int run(const struct settings *settings, char **paths, int count)
 {
+	struct reconstruct_options options = settings->reconstruct;
+	struct budget_leaves leaves = { 0 };
 	struct diagnostics diagnostics = { 0 };
 	struct reconstruct_report report;
 	struct inputs inputs = { 0 };
@@ -138,12 +172,18 @@ static int run(const struct settings *settings, char **paths, int count)
 	const int64_t began_ms = clock_now_ms();
 	int rc = list_inputs(&inputs, paths, count);
 
+	if (settings->budget > 0) {
+		options.leaf = budget_leaf_add;
+		options.data = &leaves;
+	}
 	if (rc == 0) {
-		rc = reconstruct(&mesh, inputs.scans, inputs.count, &settings->reconstruct, &report,
+		rc = reconstruct(&mesh, inputs.scans, inputs.count, &options, &report,
 				 &diagnostics);
 		if (rc < 0)
 			fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 	}
+	if (rc == 0 && settings->budget > 0)
+		rc = meet_budget(&mesh, &leaves, &report, settings);
 	if (rc == 0) {
 		rc = mesh_ply_write(&mesh, settings->out);
 		if (rc < 0)
@@ -153,6 +193,7 @@ static int run(const struct settings *settings, char **paths, int count)
 	if (rc == 0)
 		print_report(&report, &inputs, &mesh, settings, began_ms);
 	mesh_finish(&mesh);
+	budget_leaves_finish(&leaves);
 	inputs_finish(&inputs);
 	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }
@@ -189,6 +230,13 @@ static int take_option(struct settings *settings, const char *command, int optio
 	case 'w':
 		settings->reconstruct.is_closed = true;
 		return 0;
+	case 'b':
+		if (!command_number(optarg, 1, UINT32_MAX - 1, &number))
+			return command_wrong(command, "--budget-triangles must be a number, not ",
+					     optarg) +
+			       1;
+		settings->budget = (uint32_t)number;
+		return 0;
 	case 'k':
 		settings->reconstruct.keep_small = true;
 		return 0;
@@ -224,6 +272,7 @@ int command_reconstruct(int argc, char **argv)
 		{ "closed", no_argument, NULL, 'w' },
 		{ "unit", required_argument, NULL, 'u' },
 		{ "sight", required_argument, NULL, 's' },
+		{ "budget-triangles", required_argument, NULL, 'b' },
 		{ "keep-small", no_argument, NULL, 'k' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
@@ -239,6 +288,8 @@ int command_reconstruct(int argc, char **argv)
 	}
 	if (settings.cell_mm > 0 && settings.reconstruct.depth > 0)
 		return command_wrong(argv[0], "give --cell or --depth, not both", "");
+	if (settings.budget > 0 && !settings.reconstruct.is_closed)
+		return command_wrong(argv[0], "--budget-triangles needs --closed", "");
 	if (!settings.out)
 		return command_wrong(argv[0], "give --out FILE.ply", "");
 	if (optind == argc)

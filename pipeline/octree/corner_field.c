@@ -189,3 +189,23 @@ int corner_field_add(struct corner_field *field, const struct range_scan *scan)
 	}
 	return rc;
 }
+
+int corner_field_set(struct corner_field *field, const int32_t corner[3], float distance)
+{
+	const int32_t mask = FIELD_BLOCK_SIDE - 1;
+	int32_t block[3];
+	uint32_t found;
+	int rc;
+
+	for (int k = 0; k < 3; k++)
+		block[k] = corner[k] >> FIELD_BLOCK_SHIFT;
+	rc = find_or_add(field, block, &found);
+	if (rc == 0) {
+		const int32_t index = ((corner[2] & mask) * FIELD_BLOCK_SIDE + (corner[1] & mask)) *
+					      FIELD_BLOCK_SIDE +
+				      (corner[0] & mask);
+
+		field->corners[found][index] = (struct field_corner){ distance, 1 };
+	}
+	return rc;
+}

@@ -44,6 +44,10 @@ static inline map_key field_key(const int32_t block[3])
 must_check int corner_field_add(struct corner_field *field, const struct range_scan *scan);
 void corner_field_finish(struct corner_field *field); /* NULL and zeroed are fine */
 
+/* Gives a corner a distance, in cells, and confidence 1, whatever was seen there. Errors as
+ * corner_field_add. */
+must_check int corner_field_set(struct corner_field *field, const int32_t corner[3],
+				float distance);
 /* Returns the number of the block with that place, or UINT32_MAX. */
 uint32_t corner_field_find(const struct corner_field *field, const int32_t block[3]);
 

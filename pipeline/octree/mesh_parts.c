@@ -46,6 +46,18 @@ int mesh_parts_count(const struct mesh *mesh, uint32_t *out)
 	return parents ? 0 : -errno;
 }
 
+int mesh_parts_find(const struct mesh *mesh, uint32_t **out)
+{
+	uint32_t parts;
+
+	*out = find_parts(mesh, &parts);
+	if (!*out)
+		return -errno;
+	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+		(*out)[i] = root_of(*out, i);
+	return 0;
+}
+
 /* Removes vertices and triangles whose part is small, and numbers the vertices that stay anew.
  * parents: the root of each vertex; numbers: room for one each. */
 static void compact(struct mesh *mesh, const uint32_t *parents, const uint32_t *sizes,

@@ -7,6 +7,9 @@
 /* Counts the parts: triangles that share a vertex belong to one part, and so does a vertex alone.
  * -ENOMEM, -ENOSPC. */
 must_check int mesh_parts_count(const struct mesh *mesh, uint32_t *out);
+/* Sets *out to the first vertex of each vertex's part; owned by the caller (spill_free). -ENOMEM,
+ * -ENOSPC. */
+must_check int mesh_parts_find(const struct mesh *mesh, uint32_t **out);
 /* Removes the parts that have less than a share of the triangles of the largest one, with their
  * vertices; the order of what stays is kept. The mesh has no textures, faces or materials.
  * *dropped: how many parts. -ENOMEM, -ENOSPC: nothing changed. */

@@ -11,12 +11,15 @@
 #include "pipeline/import/mesh_edges.h"
 #include "pipeline/octree/coarse_fill.h"
 #include "pipeline/octree/cube_surface.h"
+#include "pipeline/octree/field_flip.h"
 #include "pipeline/octree/mesh_parts.h"
 
 static const double default_cell_spacings = 1.5;
 static const uint32_t default_depth = 8;
 /* A part with a smaller share of the largest part's triangles is noise. */
 static const double small_share = 0.001;
+
+enum { CLEANING_ROUNDS = 8 };
 
 struct work {
 	const struct reconstruct_scan *scans;
@@ -154,6 +157,28 @@ static int add_scans(struct work *work)
 	return rc;
 }
 
+/* Removes small bodies and cavities from the field, layer by layer. */
+static int clean(struct work *work)
+{
+	const struct cube_surface_options surface = { .is_closed = true };
+	int rc = 0;
+
+	for (int round = 0; round < CLEANING_ROUNDS && rc == 0; round++) {
+		struct mesh mesh;
+		uint32_t parts = 0;
+
+		rc = cube_surface_draw(&mesh, &work->field, &work->fill, &surface);
+		if (rc == 0)
+			rc = field_flip_small(&work->field, &mesh, small_share, &parts);
+		mesh_finish(&mesh);
+		if (round == 0)
+			work->report->dropped_parts = parts;
+		if (parts == 0)
+			break;
+	}
+	return rc;
+}
+
 static int run(struct work *work, struct mesh *out)
 {
 	const struct cube_surface_options surface = { .is_closed = work->options->is_closed,
@@ -170,6 +195,8 @@ static int run(struct work *work, struct mesh *out)
 	work->report->blocks = work->field.block_count;
 	if (rc == 0 && surface.is_closed)
 		rc = coarse_fill_solve(&work->fill, &work->field);
+	if (rc == 0 && surface.is_closed && !work->options->keep_small)
+		rc = clean(work);
 	if (rc == 0)
 		rc = cube_surface_draw(out, &work->field, &work->fill, &surface);
 	return rc;
@@ -193,7 +220,7 @@ int reconstruct(struct mesh *out, const struct reconstruct_scan *scans, uint32_t
 	coarse_fill_finish(&work.fill);
 	if (rc == 0 && out->triangle_count == 0)
 		rc = -ENODATA;
-	if (rc == 0 && !options->keep_small && !options->leaf)
+	if (rc == 0 && !options->keep_small && !options->is_closed)
 		rc = mesh_parts_drop_small(out, small_share, &report->dropped_parts);
 	if (rc == 0)
 		rc = reconstruct_judge(out, report);

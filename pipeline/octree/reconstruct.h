@@ -23,7 +23,7 @@ struct reconstruct_options {
 	bool is_closed;  /* no open edge: holes are closed by a membrane */
 	bool keep_small; /* parts of less than a thousandth of the largest one's triangles too */
 	enum range_sight sight;
-	/* As in struct cube_surface_options; NULL: not wanted. With it, small parts are kept. */
+	/* As in struct cube_surface_options; NULL: not wanted. */
 	int (*leaf)(void *data, const int32_t cube[3], uint8_t inside,
 		    const uint32_t vertices[CUBE_EDGES]);
 	void *data; /* for leaf */

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The Happy Buddha from its 15 range images: open and watertight; the result is imported without a fault. Damaged
+# The Happy Buddha from its 15 range images: open, watertight, and with so many triangles as asked; the result is
+# imported without a fault. Damaged
 # files are refused with file, place and cure.
 set -u
 cd "$(dirname "$0")/../.."
@@ -32,6 +33,14 @@ grep -q ' triangles' <<<"$imported" || fail "import: $imported"
 ! grep -qE 'border|degenerate|wrong side|more faces' <<<"$imported" || fail "import finds faults: $imported"
 grep -qE 'box -0.04[0-9] 0.04[0-9] -0.04[0-9] to 0.03[0-9] 0.25[0-9] 0.03[0-9] m' <<<"$imported" || fail "box: $imported"
 
+for budget in 100 20001; do
+	reconstruct "budget-$budget" "$scans/happyStandRight.conf" --cell 1 --closed --budget-triangles $budget
+	[ "$(number 'border edges') $(number 'crowded edges')" = '0 0' ] || fail "budget $budget: not watertight"
+	made=$(sed -nE 's/^surface: ([0-9]+) triangles.*/\1/p' <<<"$report")
+	[ "$made" -le $budget ] && [ $((100 * made)) -ge $((98 * budget)) ] || fail "budget $budget: $made triangles"
+done
+build/gopura-content import "$folder/budget-20001.ply" >/dev/null || fail "import refuses the budget's mesh"
+
 # refused OPTIONS...: the message is in $said
 refused() {
 	said=$(build/gopura-content reconstruct --out "$folder/none.ply" "$@" 2>&1) && fail "not refused: $*"
@@ -47,6 +56,8 @@ grep -q "$folder/cells.ply: its range_grid has 244860 cells" <<<"$said" || fail 
 sed '40s/-/x/' "$scans/happyStandRight_0.ply" >"$folder/word.ply"
 refused "$folder/word.ply"
 grep -q "$folder/word.ply:40: vertex .* is not a number" <<<"$said" || fail "word: $said"
+refused "$scans/happyStandRight_0.ply" --budget-triangles 100
+grep -q 'needs --closed' <<<"$said" || fail "open budget: $said"
 refused "$scans/happyStandRight_0.ply" --cell 0.000001
 grep -q 'correct the unit' <<<"$said" || fail "tiny cubes: $said"
 exit $bad

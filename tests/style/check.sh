@@ -68,7 +68,7 @@ is_public() {
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
-	pipeline/octree/*) names="reconstruct mesh_ply" ;;
+	pipeline/octree/*) names="reconstruct budget_mesh mesh_ply" ;;
 	pipeline/keys/*) names="keys keys_place" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;
