@@ -13,13 +13,21 @@
 #define LENGTH_SHARE  1e-4f /* what a long edge costs more than a short one */
 #define LOOSE_EPSILON -10.0 /* below all weights: nothing is a feature */
 
+#define COLOUR_WEIGHT 0.02 /* of black to white, relative to moving by the edge's length */
+/* What a collapse may lose in the first round: the mean triangle off by a lattice step, which is
+ * how exact places are. Each round may lose so many times more. */
+#define LOSS_GROWTH 6.0
+
 enum {
 	BUCKETS = 1 << 15, /* of the order: the upper half of a float that is not negative */
-	DRY_PART = 32,     /* a pass that removes less than this part of the triangles was dry */
+	DRY_PART = 8,      /* a pass that removes less than this part of the triangles was dry */
+	ROUNDS_MAX = 40,   /* then the loss of any collapse is small enough */
 };
 
-/* The features that passes keep, the weakest first. */
-static const double epsilons[] = { 0.995, 0.98, 0.95, 0.9, 0.8, 0.65, 0.5, 0.25, 0.0, -0.5, -1.0 };
+/* The stages of a round: a feature may go if that loses less than flat surface may lose. */
+static const struct {
+	double epsilon, loss_share;
+} stages[] = { { 0.9, 1.0 }, { 0.5, 1.0 / 4 }, { -1.0, 1.0 / 16 } };
 
 struct candidate {
 	uint32_t gone, keep;
@@ -32,6 +40,8 @@ struct work {
 	struct candidate *candidates, *sorted; /* owned; with room for all edges */
 	uint32_t candidate_count, room, sorted_room;
 	uint32_t pass;
+	double loss_most;               /* of a collapse in this stage, with that of colours */
+	bool was_refused;               /* a collapse lost more */
 	double most;                    /* limit of the squared error, lattice steps */
 	bool loose;                     /* topology may change: the surface may pinch */
 	struct simplify_result *result; /* error_steps is squared until the end */
@@ -179,6 +189,22 @@ static bool is_last(struct work *work, uint32_t gone, uint32_t keep)
 	return mesh->alive_count <= count;
 }
 
+/* As in simplify.c: where colours differ, moving the border between them costs. */
+static double colour_loss(const struct work *work, uint32_t gone, uint32_t keep)
+{
+	const struct collapse_node *from = &work->mesh.nodes[gone], *to = &work->mesh.nodes[keep];
+	const struct lattice_vertex *vertices = work->mesh.surface->vertices;
+	double along[3], sum = 0.0;
+
+	for (int i = 0; i < 3; i++) {
+		double step = (vertices[gone].colour[i] - vertices[keep].colour[i]) / 255.0;
+
+		along[i] = from->at[i] - to->at[i];
+		sum += step * step / 3.0;
+	}
+	return COLOUR_WEIGHT * sum * collapse_dot(along, along) * from->area * from->importance;
+}
+
 static void collapse(struct work *work, uint32_t gone, uint32_t keep, double fold_cosine)
 {
 	struct collapse_mesh *mesh = &work->mesh;
@@ -188,6 +214,10 @@ static void collapse(struct work *work, uint32_t gone, uint32_t keep, double fol
 
 	quadric_add(&sum, &mesh->nodes[keep].quadric);
 	value = quadric_at(&sum, at);
+	if (value + colour_loss(work, gone, keep) > work->loss_most) {
+		work->was_refused = true;
+		return;
+	}
 	if (value > sum.weight * work->most || is_last(work, gone, keep) ||
 	    collapse_folds(mesh, gone, keep, at, fold_cosine) ||
 	    (!work->loose && !collapse_link_is_sound(mesh, keep, gone)))
@@ -218,7 +248,7 @@ static int run_pass(struct work *work, double epsilon, uint32_t target)
 	return rc;
 }
 
-static int run_passes(struct work *work, double epsilon, uint32_t target, uint32_t dry_part)
+static int run_passes(struct work *work, double epsilon, uint32_t target)
 {
 	uint32_t before;
 	int rc = 0;
@@ -228,7 +258,7 @@ static int run_passes(struct work *work, double epsilon, uint32_t target, uint32
 		if (before > target)
 			rc = run_pass(work, epsilon, target);
 	} while (rc == 0 && work->mesh.alive_count > target &&
-		 work->mesh.alive_count < before - before / dry_part);
+		 work->mesh.alive_count < before - before / DRY_PART);
 	return rc;
 }
 
@@ -243,18 +273,52 @@ static int work_init(struct work *work, struct simplify_surface *surface, double
 	return rc < 0 ? rc : features_init(&work->features, &work->mesh);
 }
 
+static double mean_area(const struct collapse_mesh *mesh)
+{
+	double sum = 0.0;
+
+	for (uint32_t v = 0; v < mesh->surface->vertex_count; v++)
+		sum += mesh->nodes[v].area;
+	return sum / (mesh->surface->triangle_count + 1.0);
+}
+
+/* Rounds of ever greater losses, until there are few enough triangles, or there was no collapse and
+ * none was refused because it loses too much. */
+static int run_rounds(struct work *work, double epsilon_least, uint32_t target)
+{
+	double loss = mean_area(&work->mesh);
+	int rc = 0;
+
+	for (int round = 0; rc == 0 && round < ROUNDS_MAX; round++, loss *= LOSS_GROWTH) {
+		const uint32_t before = work->mesh.alive_count;
+
+		work->was_refused = false;
+		for (size_t stage = 0; rc == 0 && stage < ARRAY_COUNT(stages); stage++) {
+			if (stages[stage].epsilon < epsilon_least)
+				continue;
+			work->loss_most = loss * stages[stage].loss_share;
+			rc = run_passes(work, stages[stage].epsilon, target);
+		}
+		if (work->mesh.alive_count <= target ||
+		    (work->mesh.alive_count == before && !work->was_refused))
+			break;
+	}
+	return rc;
+}
+
 int simplify_features(struct simplify_surface *surface, uint32_t target_triangles,
 		      double error_most_steps, double epsilon_least, struct simplify_result *result)
 {
 	struct work work;
 	int rc = work_init(&work, surface, error_most_steps, result);
 
-	for (uint32_t step = 0; rc == 0 && step < ARRAY_COUNT(epsilons); step++)
-		if (epsilons[step] >= epsilon_least)
-			rc = run_passes(&work, epsilons[step], target_triangles, DRY_PART);
+	if (rc == 0)
+		rc = run_rounds(&work, epsilon_least, target_triangles);
+	/* If it is stuck, the topology of the surface is the obstacle: let it pinch. */
 	work.loose = true;
+	work.loss_most = INFINITY;
 	if (rc == 0 && epsilon_least <= -1.0)
-		rc = run_passes(&work, LOOSE_EPSILON, target_triangles, DRY_PART);
+		rc = run_passes(&work, LOOSE_EPSILON, target_triangles);
 	if (rc == 0)
 		collapse_mesh_give_back(&work.mesh);
 	result->error_steps = sqrt(result->error_steps);
