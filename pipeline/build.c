@@ -92,6 +92,7 @@ static int make_stamp(struct hash *out, struct sources *sources,
 	rc = put_program(&text);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
 	buffer_put_u8(&text, content->binary_tree);
+	buffer_put_u64(&text, content->budget_bytes);
 	buffer_put_string(&text, options->out ? options->out : "");
 	buffer_put_string(&text, options->comment ? options->comment : "");
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {

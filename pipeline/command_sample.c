@@ -16,6 +16,7 @@ static const char help[] =
 	"  --jobs N        number of processes (default: one per core)\n"
 	"  --shard I/N     only part I of N equal parts, counted from 0, for machines that share DIR;\n"
 	"                  where the hierarchy is missing, they make it together\n"
+	"  --for-budget    store each tile at five qualities, as 'build --budget' needs\n"
 	"  --below-ground  also sample points below the lowest point of the model\n"
 	"\n"
 	"Section [grid] of DIR/temple.ini sets grid and resolution. The images stay in\n"
@@ -26,10 +27,18 @@ static const char help[] =
 	"  gopura-content sample temple\n"
 	"  parallel gopura-content sample --shard {}/8 temple ::: 0 1 2 3 4 5 6 7\n";
 
-static bool read_options(int argc, char **argv, struct sampler_options *options, const char **dir)
+struct settings {
+	struct sampler_options options;
+	bool is_for_budget;
+	const char *dir; /* borrowed from argv */
+};
+
+static bool read_settings(int argc, char **argv, struct settings *settings)
 {
+	struct sampler_options *options = &settings->options;
 	static const struct option names[] = { { "jobs", required_argument, NULL, 'j' },
 					       { "shard", required_argument, NULL, 's' },
+					       { "for-budget", no_argument, NULL, 'f' },
 					       { "below-ground", no_argument, NULL, 'b' },
 					       { "help", no_argument, NULL, 'h' },
 					       { NULL, 0, NULL, 0 } };
@@ -48,6 +57,9 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 			if (!command_shard(optarg, &options->shard))
 				return false;
 			break;
+		case 'f':
+			settings->is_for_budget = true;
+			break;
 		case 'b':
 			options->below_ground = true;
 			break;
@@ -58,7 +70,7 @@ static bool read_options(int argc, char **argv, struct sampler_options *options,
 			return false;
 		}
 	}
-	*dir = argv[optind];
+	settings->dir = argv[optind];
 	return argc == optind + 1;
 }
 
@@ -94,31 +106,33 @@ static void report(const char *dir)
 
 int command_sample(int argc, char **argv)
 {
-	struct sampler_options options = { 0 };
+	struct settings settings = { 0 };
 	struct diagnostics diagnostics = { 0 };
 	struct content content;
 	struct scans *scans = NULL;
-	const char *dir;
 	int rc;
 
-	if (!read_options(argc, argv, &options, &dir)) {
+	if (!read_settings(argc, argv, &settings)) {
 		fputs("gopura-content sample: give one content folder; see --help\n", stderr);
 		return 2;
 	}
-	rc = command_read_content(&content, dir);
+	rc = command_read_content(&content, settings.dir);
 	if (rc < 0)
 		return EXIT_FAILURE;
-	content.import.jobs = options.jobs;
+	content.import.jobs = settings.options.jobs;
+	if (settings.is_for_budget)
+		content.budget_bytes =
+			UINT64_MAX; /* any: samples depend only on whether there is one */
 	rc = scans_create(&scans, &content);
 	if (rc == 0)
-		rc = run(scans, &options, &diagnostics);
+		rc = run(scans, &settings.options, &diagnostics);
 	scans_destroy(scans);
 	content_release(&content);
 	if (rc < 0) {
 		fprintf(stderr, "%s\n", diagnostics_cause(&diagnostics, rc));
 		return EXIT_FAILURE;
 	}
-	if (options.shard.count <= 1)
-		report(dir);
+	if (settings.options.shard.count <= 1)
+		report(settings.dir);
 	return EXIT_SUCCESS;
 }

@@ -24,6 +24,35 @@ bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *o
 	       *out <= most;
 }
 
+bool command_size(const char *text, uint64_t *out)
+{
+	static const struct {
+		const char *name;
+		double bytes;
+	} units[] = { { "B", 1 }, { "kB", 1e3 }, { "MB", 1e6 }, { "GB", 1e9 } };
+	size_t whole = strspn(text, "0123456789"), part = 0;
+	double number;
+
+	if (whole == 0 || whole > 15)
+		return false;
+	if (text[whole] == '.') {
+		part = strspn(text + whole + 1, "0123456789");
+		if (part == 0)
+			return false;
+		part++;
+	}
+	number = strtod(text, NULL);
+	text += whole + part;
+	text += *text == ' ';
+	for (size_t i = 0; i < ARRAY_COUNT(units); i++)
+		if (strcmp(text, units[i].name) == 0) {
+			number *= units[i].bytes;
+			*out = (uint64_t)number;
+			return number >= 1 && number < 1e18;
+		}
+	return false;
+}
+
 bool command_shard(const char *text, struct shard *out)
 {
 	char rest;

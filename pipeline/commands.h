@@ -48,6 +48,11 @@ int command_wrong(const char *command, const char *what, const char *value);
  * otherwise; *out is then undefined. */
 bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *out);
 
+/* Parses a number of bytes: a number, of which parts may follow a point, and B, kB, MB or GB, which
+ * are powers of 1000, with or without a space between. It is at least 1 byte. Returns false
+ * otherwise; *out is then undefined. */
+bool command_size(const char *text, uint64_t *out);
+
 /* Parses I/N, I below N. Returns false otherwise; *out is then undefined. */
 bool command_shard(const char *text, struct shard *out);
 

@@ -219,14 +219,17 @@ static int try_hierarchy(struct looking *looking)
 
 static int try_machine(struct looking *looking)
 {
+	enum { budget_quality = 80 };
 	const struct content *content = looking->content;
+	struct content tried = *content;
 	const struct estimate_stage *stages = looking->out->stages;
 	int rc = 0;
 
 	if (!stages[ESTIMATE_HIERARCHY].is_done || !stages[ESTIMATE_IMPORT].is_done)
 		rc = try_hierarchy(looking);
+	tried.quality = content->budget_bytes > 0 ? budget_quality : content->quality;
 	if (rc == 0 && !stages[ESTIMATE_SAMPLES].is_done)
-		rc = sampling_trial(&looking->speeds.sampling, content,
+		rc = sampling_trial(&looking->speeds.sampling, &tried,
 				    content_is_lit(content, looking->out->work.has_pictures));
 	return rc;
 }
@@ -253,6 +256,11 @@ static const double
 	/* processor time of a triangle that is drawn: those of the trial are far away, and most of
 	 * them smaller than a pixel */
 	triangle_real = 5, triangle_pictures = 3.5,
+	/* with a budget, bytes of a tile at its lowest quality, at its best one, and at all five
+	 * together, to those at the one that the trial encodes, which is budget_quality */
+	choice_least = 0.43, choice_most = 1.9, choice_all = 4.6,
+	/* processor time of encoding five to that of one */
+	choice_time = 5,
 	/* bytes of the objects of all groups, for each triangle of the scan */
 	master_bytes = 4.2,
 	/* of published patches, for each of their triangles */
@@ -321,8 +329,8 @@ static double content_tile_s(const struct looking *looking)
 	double more = looking->content->effort == TILE_QUICK ? more_quick : more_thorough;
 	double bytes = fmax(0, content_tile_bytes(looking) - trial->tile_bytes);
 
-	return trial->tile_s * (1 + more * bytes / 1000) *
-	       (looking->out->work.has_pictures ? tile_pictures : 1);
+	return (looking->content->budget_bytes > 0 ? choice_time : 1) * trial->tile_s *
+	       (1 + more * bytes / 1000) * (looking->out->work.has_pictures ? tile_pictures : 1);
 }
 
 /* What a process of the sampler keeps of the surface, beyond what the trial has. */
@@ -353,7 +361,8 @@ static void judge_samples(struct looking *looking)
 		triangles = fmin(triangles, 3 * texels);
 
 	stage->disk_bytes =
-		(uint64_t)(todo * (double)work->tile_count * content_tile_bytes(looking));
+		(uint64_t)(todo * (double)work->tile_count * content_tile_bytes(looking) *
+			   (looking->content->budget_bytes > 0 ? choice_all : 1));
 	if (work->points_done >= 8) /* what is done tells more than a trial */
 		stage->disk_bytes = looking->samples_done_bytes / work->points_done *
 				    (work->point_count - work->points_done);
@@ -372,6 +381,19 @@ static void judge_samples(struct looking *looking)
 	}
 	stage->memory_bytes = (uint64_t)jobs * (trial->process_bytes + surface_bytes(work) +
 						(work->has_pictures ? MESA_BYTES : 0));
+}
+
+/* Adds tiles to a release of all else, as many bytes as the budget lets. */
+static void spend_budget(struct estimate *out, uint64_t budget_bytes)
+{
+	double tiles = (double)out->stages[ESTIMATE_SAMPLES].disk_bytes / choice_all;
+	uint64_t most_bytes = out->release_bytes + (uint64_t)(choice_most * tiles);
+
+	out->budget_bytes = budget_bytes;
+	out->least_bytes = out->release_bytes + (uint64_t)(choice_least * tiles);
+	out->release_bytes = budget_bytes < most_bytes ? budget_bytes : most_bytes;
+	if (out->release_bytes < out->least_bytes)
+		out->release_bytes = out->least_bytes;
 }
 
 static void judge_publishing(struct looking *looking)
@@ -396,9 +418,12 @@ static void judge_publishing(struct looking *looking)
 		out->work.published_triangles = cut.triangle_count;
 		master_cut_finish(&cut);
 	}
-	out->release_bytes = patches_bytes + out->stages[ESTIMATE_SAMPLES].disk_bytes +
-			     A_TILE * out->work.tile_count + A_FACE * out->work.face_count +
-			     INFORMATION;
+	out->release_bytes = patches_bytes + A_TILE * out->work.tile_count +
+			     A_FACE * out->work.face_count + INFORMATION;
+	if (looking->content->budget_bytes > 0)
+		spend_budget(out, looking->content->budget_bytes);
+	else
+		out->release_bytes += out->stages[ESTIMATE_SAMPLES].disk_bytes;
 	stage->disk_bytes = out->release_bytes;
 	stage->processor_s = 0.03 + publish_s_a_byte * (double)out->release_bytes;
 	stage->time_s = spread(looking, stage->processor_s, 1);
@@ -583,5 +608,11 @@ void estimate_print(FILE *to, const struct estimate *estimate)
 	fprintf(to, "release: %s, about %" PRIu64 " triangles; .work keeps %s\n",
 		size_text(disk, estimate->release_bytes), work->published_triangles,
 		size_text(memory, estimate->work_bytes));
+	if (estimate->budget_bytes > 0)
+		fprintf(to, "budget: %s; at least about %s are needed%s\n",
+			size_text(disk, estimate->budget_bytes),
+			size_text(memory, estimate->least_bytes),
+			estimate->budget_bytes < estimate->least_bytes ? ": it seems too small"
+								       : "");
 	print_room(to, estimate);
 }

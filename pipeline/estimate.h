@@ -43,6 +43,8 @@ struct estimate {
 	uint64_t disk_peak_bytes;    /* of .work and the release together, with what is there */
 	uint64_t work_bytes;         /* of .work after the build */
 	uint64_t release_bytes;      /* of the release's objects */
+	uint64_t budget_bytes;       /* as in content; 0: none */
+	uint64_t least_bytes;        /* with a budget: of the smallest release */
 	uint64_t disk_present_bytes; /* of the stages that are done */
 	uint64_t disk_free_bytes;    /* of the file system with .work; UINT64_MAX: unknown */
 	uint64_t memory_free_bytes;  /* of the machine; 0: unknown */

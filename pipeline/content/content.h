@@ -49,6 +49,8 @@ struct content {
 	uint32_t face_px;         /* size of the finest sampling face: 128, 256 ... 4096 */
 	uint32_t quality;         /* 1..100 */
 	enum tile_effort effort;  /* of tiles */
+	uint64_t budget_bytes;    /* of the whole release; 0: none. Not in temple.ini */
+	bool quality_by_features; /* with a budget: more for tiles with more feature points */
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	bool simplify_features;   /* levels keep feature edges; else by quadrics */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/keys/keys_place.h"
+#include "pipeline/release/publish_budget.h"
 #include "pipeline/release/publish_hierarchy.h"
 #include "pipeline/release/publish_info.h"
 #include "pipeline/release/publish_labels.h"
@@ -152,11 +153,23 @@ static int add_hierarchy(struct object_store *objects, struct root_page *root,
 	return rc;
 }
 
+/* Opens the samples. With a budget their pages are made twice: first with the smallest tiles. */
+static int add_samples(struct object_store *objects, struct samples_store **store,
+		       const struct content *content, struct page_child *out)
+{
+	int rc = samples_store_open(store, content->folder);
+
+	if (rc == 0 && content->budget_bytes > 0)
+		rc = publish_budget_begin(*store);
+	return rc < 0 ? rc : publish_samples(objects, *store, out);
+}
+
 static int publish_objects(struct publish_content_report *report,
 			   const struct publish_target *target, struct object_store *objects,
 			   struct sources *sources)
 {
-	const char *folder = sources_content(sources)->folder;
+	const struct content *content = sources_content(sources);
+	struct samples_store *store = NULL;
 	struct page_child children[ROOT_CHILDREN_MAX];
 	uint32_t child_count = ROOT_CHILD_COUNT;
 	const struct info_built *info;
@@ -165,17 +178,21 @@ static int publish_objects(struct publish_content_report *report,
 			       &report->patch_bytes);
 
 	if (rc == 0)
-		rc = publish_samples(objects, folder, &children[ROOT_CHILD_SAMPLES]);
+		rc = add_samples(objects, &store, content, &children[ROOT_CHILD_SAMPLES]);
 	if (rc == 0)
 		rc = sources_info(sources, &info);
 	if (rc == 0)
-		rc = publish_info(objects, info, folder, &children[ROOT_CHILD_INFO]);
+		rc = publish_info(objects, info, content->folder, &children[ROOT_CHILD_INFO]);
 	if (rc == 0)
 		rc = publish_labels(objects, &root, sources, children,
 				    &children[ROOT_CHILD_LABELS]);
 	scans_drop_mesh(sources_scans(sources));
 	if (rc > 0)
 		child_count = ROOT_CHILD_LABELS + 1;
+	if (rc >= 0 && content->budget_bytes > 0)
+		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
+					 content->budget_bytes);
+	samples_store_close(store);
 	if (rc >= 0)
 		rc = publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
 				    &children[child_count]);

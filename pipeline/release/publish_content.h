@@ -7,6 +7,7 @@
 
 #include "pipeline/content/sources.h"
 #include "pipeline/release/publish.h"
+#include "pipeline/release/publish_budget.h"
 
 struct publish_content_options {
 	struct sources *sources; /* borrowed */
@@ -26,6 +27,7 @@ struct publish_content_report {
 	uint64_t patch_bytes; /* of the published groups */
 	float start_eye_m[3], start_target_m[3];
 	bool lit;
+	struct publish_budget_report budget; /* all 0 if there was no budget */
 };
 
 /* Publishes the content folder. Makes signing keys if there are none. Returns -ENOENT if hierarchy

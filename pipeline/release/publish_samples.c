@@ -150,14 +150,15 @@ static int start(struct samples_writer *writer, const struct samples_store *stor
 	return 0;
 }
 
-int publish_samples(struct object_store *objects, const char *content, struct page_child *out)
+int publish_samples(struct object_store *objects, struct samples_store *store,
+		    struct page_child *out)
 {
 	struct samples_writer *writer = calloc(1, sizeof(*writer));
-	struct samples_store *store = NULL;
 	struct sample_face face;
 	struct buffer payload;
-	int rc = writer ? samples_store_open(&store, content) : -ENOMEM;
+	int rc = writer ? 0 : -ENOMEM;
 
+	samples_store_rewind(store);
 	buffer_init(&payload, PAGE_BYTES_MAX);
 	if (rc == 0) {
 		writer->objects = objects;
@@ -172,7 +173,6 @@ int publish_samples(struct object_store *objects, const char *content, struct pa
 		rc = add_page(objects, PAGE_SAMPLES, &writer->bricks, &payload, out);
 	}
 	buffer_finish(&payload);
-	samples_store_close(store);
 	if (writer) {
 		samples_page_finish(&writer->page);
 		free(writer->bricks.items);

@@ -9,6 +9,7 @@
 
 #include "geometry/camera.h"
 #include "pipeline/samples/cube_frame.h"
+#include "pipeline/samples/face_features.h"
 #include "pipeline/samples/pieces.h"
 #include "pipeline/samples/raster.h"
 #include "pipeline/samples/resolve.h"
@@ -30,6 +31,7 @@ struct face_renderer {
 	struct pyramid pyramid;
 	int frame_px, samples; /* of the frame; per pixel and axis */
 	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
+	uint32_t features[FACE_TILES_MAX][SAMPLE_SCALES_MAX]; /* of all places of a face */
 };
 
 /* The picture of a level is wider than its face by the aprons that the coarsest level needs. */
@@ -163,10 +165,20 @@ static uint16_t find_coverage(const struct face_renderer *renderer)
 static int encode_tile(struct face_renderer *renderer, struct shot *shot, uint32_t level,
 		       uint32_t x, uint32_t y)
 {
-	pyramid_sharpen(&renderer->pyramid, renderer->options.level_count - 1 - level, x, y,
-			SAMPLE_IMAGE_PX, renderer->tile);
-	return tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX,
-			   renderer->options.quality, renderer->options.effort);
+	const struct face_renderer_options *options = &renderer->options;
+	const uint32_t choices = options->choice_count > 1 ? options->choice_count : 1;
+	int rc = 0;
+
+	pyramid_sharpen(&renderer->pyramid, options->level_count - 1 - level, x, y, SAMPLE_IMAGE_PX,
+			renderer->tile);
+	for (uint32_t choice = 0; rc == 0 && choice < choices; choice++) {
+		int quality = choices > 1 ? options->qualities[choice] : options->quality;
+
+		rc = tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX, quality,
+				 options->effort);
+		shot->end_of[shot->tile_count * choices + choice] = (uint32_t)shot->objects.size;
+	}
+	return rc;
 }
 
 static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t level)
@@ -187,7 +199,7 @@ static int cut_level(struct face_renderer *renderer, struct shot *shot, uint32_t
 		if (rc < 0)
 			return rc;
 		shot->tiles[n] = (uint16_t)index;
-		shot->end_of[n] = (uint32_t)shot->objects.size;
+		memcpy(shot->features[n], renderer->features[index], sizeof(shot->features[n]));
 		shot->tile_count++;
 	}
 	return 0;
@@ -293,6 +305,10 @@ int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const 
 		return 0;
 	pyramid_reduce(&renderer->pyramid);
 	pyramid_fill(&renderer->pyramid);
+	if (renderer->options.scale_count > 0 && renderer->raster)
+		rc = face_features_count(renderer->features, renderer->raster,
+					 (uint32_t)renderer->frame_px, (uint32_t)renderer->samples,
+					 renderer->options.level_count);
 	for (uint32_t level = 0; rc == 0 && level < renderer->options.level_count; level++)
 		rc = cut_level(renderer, shot, level);
 	return rc;

@@ -8,6 +8,7 @@
 #include "format/tile.h"
 #include "pipeline/samples/drawing.h"
 #include "pipeline/samples/pyramid.h"
+#include "pipeline/samples/sample_store.h"
 
 struct face_renderer_options {
 	struct model *model;                 /* borrowed for the renderer's lifetime */
@@ -18,6 +19,11 @@ struct face_renderer_options {
 	/* of tile_encode */
 	int quality; /* 1..100 */
 	enum tile_effort effort;
+	/* As in sample_grid: more than one quality instead, and whether feature points are counted
+	 * (of scans without pictures only). */
+	uint32_t choice_count;
+	uint8_t qualities[SAMPLE_CHOICES_MAX];
+	uint32_t scale_count;
 };
 
 struct shot {
@@ -27,9 +33,11 @@ struct shot {
 	/* As in brick_page. */
 	float near_m, far_m;
 	uint32_t tile_count;
-	uint16_t tiles[FACE_TILES_MAX];  /* face_tile_index of each, ascending */
-	uint32_t end_of[FACE_TILES_MAX]; /* where each tile ends in objects */
-	struct buffer objects;           /* owned; the encoded tiles one after the other */
+	uint16_t tiles[FACE_TILES_MAX]; /* face_tile_index of each, ascending */
+	/* Where each tile ends in objects at each quality, tile by tile. */
+	uint32_t end_of[FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
+	uint32_t features[FACE_TILES_MAX][SAMPLE_SCALES_MAX]; /* of each tile */
+	struct buffer objects; /* owned; the encoded tiles one after the other */
 };
 
 struct face_renderer;

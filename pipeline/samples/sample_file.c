@@ -43,6 +43,16 @@ bool sample_file_open(struct reader *reader, struct bytes file, const char magic
 
 /* ---- a point */
 
+static uint32_t choices_of(const struct sample_grid *grid)
+{
+	return grid->choice_count > 1 ? grid->choice_count : 1;
+}
+
+static uint32_t scales_of(const struct sample_grid *grid)
+{
+	return grid->choice_count > 1 ? grid->scale_count : 0;
+}
+
 static void put_face_head(struct buffer *file, const struct sample_face *face)
 {
 	buffer_put_u8(file, (uint8_t)face->face);
@@ -64,8 +74,25 @@ static void read_face_head(struct reader *reader, struct sample_face *out)
 	out->tile_count = reader_u32(reader);
 }
 
-void sample_file_put_point(struct buffer *file, enum sample_state state,
-			   const struct sample_face *faces, uint32_t face_count)
+static void put_tile(struct buffer *file, const struct sample_grid *grid,
+		     const struct sample_face *face, uint32_t tile)
+{
+	const uint32_t choices = choices_of(grid);
+
+	buffer_put_u16(file, face->tiles[tile]);
+	for (uint32_t scale = 0; scale < scales_of(grid); scale++)
+		buffer_put_u32(file, face->features[tile][scale]);
+	for (uint32_t choice = 0; choice < choices; choice++) {
+		const struct bytes object = face->objects[tile * choices + choice];
+
+		buffer_put_u32(file, (uint32_t)object.size);
+		buffer_put(file, object.data, object.size);
+	}
+}
+
+void sample_file_put_point(struct buffer *file, const struct sample_grid *grid,
+			   enum sample_state state, const struct sample_face *faces,
+			   uint32_t face_count)
 {
 	buffer_put_u8(file, (uint8_t)state);
 	buffer_put_u8(file, (uint8_t)face_count);
@@ -73,17 +100,30 @@ void sample_file_put_point(struct buffer *file, enum sample_state state,
 		const struct sample_face *face = &faces[n];
 
 		put_face_head(file, face);
-		for (uint32_t i = 0; i < face->tile_count; i++) {
-			buffer_put_u16(file, face->tiles[i]);
-			buffer_put_u32(file, (uint32_t)face->objects[i].size);
-			buffer_put(file, face->objects[i].data, face->objects[i].size);
-		}
+		for (uint32_t i = 0; i < face->tile_count; i++)
+			put_tile(file, grid, face, i);
 	}
 }
 
 /* ---- its summary */
 
-static int summarize_face(struct buffer *out, struct reader *contents, uint32_t level_count)
+/* The feature points and the qualities of a tile. */
+static void summarize_tile(struct buffer *out, struct reader *contents,
+			   const struct sample_grid *grid)
+{
+	for (uint32_t scale = 0; scale < scales_of(grid); scale++)
+		buffer_put_u32(out, reader_u32(contents));
+	for (uint32_t choice = 0; choice < choices_of(grid); choice++) {
+		uint32_t size = reader_u32(contents);
+		struct hash hash = hash_of(reader_bytes(contents, size));
+
+		buffer_put_u32(out, size);
+		buffer_put(out, hash.bytes, HASH_BYTES);
+	}
+}
+
+static int summarize_face(struct buffer *out, struct reader *contents,
+			  const struct sample_grid *grid)
 {
 	struct sample_face face;
 	uint32_t places;
@@ -91,7 +131,7 @@ static int summarize_face(struct buffer *out, struct reader *contents, uint32_t 
 
 	read_face_head(contents, &face);
 	if (contents->failed || face.face >= CUBE_FACES || face.level_count < 1 ||
-	    face.level_count > level_count)
+	    face.level_count > grid->level_count)
 		return -EBADMSG;
 	places = face_tile_index(face.level_count, 0, 0);
 	if (face.tile_count < 1 || face.tile_count > places)
@@ -99,20 +139,18 @@ static int summarize_face(struct buffer *out, struct reader *contents, uint32_t 
 	put_face_head(out, &face);
 	for (uint32_t i = 0; i < face.tile_count; i++) {
 		uint16_t tile = reader_u16(contents);
-		uint32_t size = reader_u32(contents);
-		struct hash hash = hash_of(reader_bytes(contents, size));
 
-		if (tile >= places || tile <= before)
+		if (contents->failed || tile >= places || tile <= before)
 			return -EBADMSG;
 		before = tile;
 		buffer_put_u16(out, tile);
-		buffer_put_u32(out, size);
-		buffer_put(out, hash.bytes, HASH_BYTES);
+		summarize_tile(out, contents, grid);
 	}
 	return contents->failed ? -EBADMSG : 0;
 }
 
-int sample_file_summarize(struct buffer *out, struct reader *contents, uint32_t level_count)
+int sample_file_summarize(struct buffer *out, struct reader *contents,
+			  const struct sample_grid *grid)
 {
 	uint8_t state = reader_u8(contents), face_count = reader_u8(contents);
 	int rc = 0;
@@ -122,11 +160,12 @@ int sample_file_summarize(struct buffer *out, struct reader *contents, uint32_t 
 	buffer_put_u8(out, state);
 	buffer_put_u8(out, face_count);
 	for (uint8_t i = 0; rc == 0 && i < face_count; i++)
-		rc = summarize_face(out, contents, level_count);
+		rc = summarize_face(out, contents, grid);
 	return rc < 0 ? rc : out->error;
 }
 
-bool sample_summary_open(struct sample_summary *summary, struct bytes bytes)
+bool sample_summary_open(struct sample_summary *summary, struct bytes bytes,
+			 const struct sample_grid *grid)
 {
 	uint8_t state;
 
@@ -134,15 +173,44 @@ bool sample_summary_open(struct sample_summary *summary, struct bytes bytes)
 	state = reader_u8(&summary->reader);
 	summary->faces_left = reader_u8(&summary->reader);
 	summary->at = SAMPLE_FILE_HEAD_BYTES + 2;
+	summary->choice_count = choices_of(grid);
+	summary->scale_count = scales_of(grid);
 	if (summary->reader.failed || state >= SAMPLE_STATES || summary->faces_left > CUBE_FACES)
 		return false;
 	summary->state = state;
 	return true;
 }
 
-bool sample_summary_next(struct sample_summary *summary, struct sample_face *out)
+/* Reads a tile, of which a quality was chosen. */
+static void read_tile(struct sample_summary *summary, uint32_t i, uint32_t chosen)
 {
 	struct reader *reader = &summary->reader;
+
+	summary->tiles[i] = reader_u16(reader);
+	summary->at += 2 + 4 * summary->scale_count;
+	for (uint32_t scale = 0; scale < summary->scale_count; scale++)
+		summary->features[i][scale] = reader_u32(reader);
+	for (uint32_t choice = 0; choice < summary->choice_count; choice++) {
+		uint32_t size = reader_u32(reader);
+		struct bytes hash = reader_bytes(reader, HASH_BYTES);
+
+		if (reader->failed)
+			return;
+		summary->choice_sizes[i * SAMPLE_CHOICES_MAX + choice] = size;
+		if (choice == chosen) {
+			summary->sizes[i] = size;
+			summary->offsets[i] = summary->at + 4;
+			memcpy(summary->hashes[i].bytes, hash.data, HASH_BYTES);
+		}
+		summary->at += 4 + (uint64_t)size;
+	}
+}
+
+bool sample_summary_next(struct sample_summary *summary, struct sample_face *out,
+			 const uint8_t *choices, uint32_t choices_left)
+{
+	struct reader *reader = &summary->reader;
+	const uint32_t best = summary->choice_count - 1;
 
 	summary->faces_left--;
 	read_face_head(reader, out);
@@ -150,20 +218,19 @@ bool sample_summary_next(struct sample_summary *summary, struct sample_face *out
 	if (reader->failed || out->face >= CUBE_FACES || out->tile_count > FACE_TILES_MAX)
 		return false;
 	for (uint32_t i = 0; i < out->tile_count; i++) {
-		struct bytes hash;
+		uint32_t chosen = i < choices_left && choices[i] < best ? choices[i] : best;
 
-		summary->tiles[i] = reader_u16(reader);
-		summary->sizes[i] = reader_u32(reader);
-		hash = reader_bytes(reader, HASH_BYTES);
+		read_tile(summary, i, chosen);
 		if (reader->failed)
 			return false;
-		memcpy(summary->hashes[i].bytes, hash.data, HASH_BYTES);
-		summary->offsets[i] = summary->at + 6;
-		summary->at += 6 + (uint64_t)summary->sizes[i];
 	}
 	out->tiles = summary->tiles;
 	out->sizes = summary->sizes;
 	out->hashes = summary->hashes;
 	out->offsets = summary->offsets;
+	out->choice_sizes = summary->choice_sizes;
+	out->features = summary->scale_count > 0
+				? (const uint32_t(*)[SAMPLE_SCALES_MAX])summary->features
+				: NULL;
 	return true;
 }

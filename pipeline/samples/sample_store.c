@@ -17,7 +17,8 @@
 
 enum { GRID_BYTES_MAX = 1 << 20, INDEX_BYTES_MAX = 512 << 20, YOUNG_S = 2 };
 
-static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt", index_magic[4] = "GSix";
+static const char grid_magic[4] = "GSgr", point_magic[4] = "GSpt", index_magic[4] = "GSix",
+		  chosen_magic[4] = "GSch";
 
 /* A point's file, as far as it is known. */
 struct point {
@@ -36,7 +37,10 @@ struct samples_store {
 	uint32_t point_count; /* of all bricks, also those outside the grid */
 	bool is_changed;      /* a summary was made that index does not have */
 	uint32_t states[SAMPLE_STATES];
+	uint8_t *choices; /* owned; for each tile, of those of the grid; NULL: the best */
+	uint32_t choice_count;
 	uint32_t next_point; /* number in the order of the bricks */
+	uint32_t next_tile;  /* in the order of samples_store_next */
 	uint32_t place[3];   /* of the faces that samples_store_next gives */
 	struct sample_summary summary;
 	char path[PATH_MAX]; /* of that point's file */
@@ -60,7 +64,12 @@ static bool grid_is_sane(const struct sample_grid *grid)
 		if (grid->count[i] < 1 || grid->count[i] > SAMPLE_GRID_MAX ||
 		    !isfinite(grid->origin_m[i]) || !(grid->spacing_m[i] > 0))
 			return false;
-	return grid->level_count >= 1 && grid->level_count <= SAMPLE_LEVELS_MAX;
+	for (uint32_t c = 0; c < grid->choice_count && c < SAMPLE_CHOICES_MAX; c++)
+		if (grid->qualities[c] < 1 || grid->qualities[c] > 100 ||
+		    (c > 0 && grid->qualities[c] <= grid->qualities[c - 1]))
+			return false;
+	return grid->level_count >= 1 && grid->level_count <= SAMPLE_LEVELS_MAX &&
+	       grid->choice_count <= SAMPLE_CHOICES_MAX && grid->scale_count <= SAMPLE_SCALES_MAX;
 }
 
 static bool read_grid(struct samples_store *store)
@@ -76,6 +85,12 @@ static bool read_grid(struct samples_store *store)
 	for (int i = 0; i < 3; i++)
 		store->grid.count[i] = reader_u32(&reader);
 	store->grid.level_count = reader_u32(&reader);
+	if (reader_left(&reader) > 0) {
+		store->grid.choice_count = reader_u8(&reader);
+		store->grid.scale_count = reader_u8(&reader);
+		for (uint32_t c = 0; c < store->grid.choice_count && c < SAMPLE_CHOICES_MAX; c++)
+			store->grid.qualities[c] = reader_u8(&reader);
+	}
 	return !reader.failed && !reader_left(&reader) && grid_is_sane(&store->grid);
 }
 
@@ -194,7 +209,7 @@ static int summarize(struct samples_store *store, struct point *point, const cha
 	if (!hash_equal(key, store->key))
 		return -ENOENT;
 	buffer_init(&summary, SAMPLE_FILE_BYTES_MAX);
-	rc = sample_file_summarize(&summary, &reader, store->grid.level_count);
+	rc = sample_file_summarize(&summary, &reader, &store->grid);
 	if (rc < 0) {
 		buffer_finish(&summary);
 		return rc;
@@ -241,7 +256,8 @@ static int survey(struct samples_store *store)
 		if (!point_exists(&store->grid, place))
 			continue;
 		rc = look_at(store, n, place);
-		if (rc == 0 && !sample_summary_open(&store->summary, store->points[n].summary))
+		if (rc == 0 &&
+		    !sample_summary_open(&store->summary, store->points[n].summary, &store->grid))
 			rc = -EBADMSG;
 		if (rc == 0)
 			store->states[store->summary.state]++;
@@ -308,6 +324,63 @@ int samples_store_look(struct samples_store **out, const char *content_dir)
 	return 0;
 }
 
+/* ---- the choice */
+
+int samples_store_choose(struct samples_store *store, const uint8_t *choices, uint32_t count)
+{
+	uint8_t *copy = malloc(count + 1);
+
+	if (!copy)
+		return -ENOMEM;
+	memcpy(copy, choices, count);
+	free(store->choices);
+	store->choices = copy;
+	store->choice_count = count;
+	samples_store_rewind(store);
+	return 0;
+}
+
+int samples_store_keep_choice(const struct samples_store *store)
+{
+	char path[PATH_MAX];
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, INDEX_BYTES_MAX);
+	sample_file_begin(&file, chosen_magic, store->key);
+	buffer_put(&file, store->choices, store->choice_count);
+	sample_file_seal(&file);
+	snprintf(path, sizeof(path), "%s/chosen", store->dir);
+	rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* Takes what was kept, if it is of these samples. */
+static void load_choice(struct samples_store *store)
+{
+	struct reader reader;
+	struct bytes choices;
+	struct buffer file;
+	struct hash key;
+	char path[PATH_MAX];
+
+	if (store->grid.choice_count < 2)
+		return;
+	buffer_init(&file, INDEX_BYTES_MAX);
+	snprintf(path, sizeof(path), "%s/chosen", store->dir);
+	if (buffer_read_file(&file, path) == 0 &&
+	    sample_file_open(&reader, buffer_bytes(&file), chosen_magic, &key) &&
+	    hash_equal(key, store->key)) {
+		choices = reader_bytes(&reader, reader_left(&reader));
+		if (samples_store_choose(store, choices.data, (uint32_t)choices.size) < 0)
+			log_warn("pipeline", "%s: no memory; the best tiles are taken", path);
+	}
+	buffer_finish(&file);
+}
+
+/* ---- opening */
+
 int samples_store_open(struct samples_store **out, const char *content_dir)
 {
 	struct samples_store *store;
@@ -326,6 +399,7 @@ int samples_store_open(struct samples_store **out, const char *content_dir)
 			log_warn("pipeline", "%s/index: %s: the next build reads all samples again",
 				 store->dir, strerror(-rc));
 	}
+	load_choice(store);
 	samples_store_rewind(store);
 	*out = store;
 	return 0;
@@ -338,6 +412,7 @@ void samples_store_close(struct samples_store *store)
 	for (uint32_t n = 0; n < store->point_count && store->points; n++)
 		free(store->points[n].own);
 	free(store->points);
+	free(store->choices);
 	buffer_finish(&store->grid_file);
 	buffer_finish(&store->index_file);
 	buffer_finish(&store->point_file);
@@ -357,6 +432,7 @@ struct hash samples_store_key(const struct samples_store *store)
 void samples_store_rewind(struct samples_store *store)
 {
 	store->next_point = 0;
+	store->next_tile = 0;
 	store->summary.faces_left = 0;
 }
 
@@ -365,7 +441,8 @@ enum sample_state samples_store_state(const struct samples_store *store, const u
 	struct sample_summary summary;
 
 	if (!point_exists(&store->grid, point) ||
-	    !sample_summary_open(&summary, store->points[number_of(&store->grid, point)].summary))
+	    !sample_summary_open(&summary, store->points[number_of(&store->grid, point)].summary,
+				 &store->grid))
 		return SAMPLE_EMPTY; /* not after survey */
 	return summary.state;
 }
@@ -382,7 +459,7 @@ static bool advance(struct samples_store *store)
 		uint32_t n = store->next_point++;
 
 		if (store->points[n].summary.size == 0 ||
-		    !sample_summary_open(&store->summary, store->points[n].summary) ||
+		    !sample_summary_open(&store->summary, store->points[n].summary, &store->grid) ||
 		    store->summary.faces_left == 0)
 			continue;
 		point_in_order(&store->grid, n, store->place);
@@ -394,10 +471,15 @@ static bool advance(struct samples_store *store)
 
 int samples_store_next(struct samples_store *store, struct sample_face *out)
 {
+	uint32_t left;
+
 	if (store->summary.faces_left == 0 && !advance(store))
 		return 0;
-	if (!sample_summary_next(&store->summary, out))
+	left = store->choice_count > store->next_tile ? store->choice_count - store->next_tile : 0;
+	if (!sample_summary_next(&store->summary, out,
+				 left > 0 ? store->choices + store->next_tile : NULL, left))
 		return -EBADMSG; /* not after survey, which was content with it */
+	store->next_tile += out->tile_count;
 	memcpy(out->point, store->place, sizeof(out->point));
 	out->path = store->path;
 	return 1;
@@ -453,6 +535,11 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	for (int i = 0; i < 3; i++)
 		buffer_put_u32(&file, grid->count[i]);
 	buffer_put_u32(&file, grid->level_count);
+	if (grid->choice_count > 1) {
+		buffer_put_u8(&file, (uint8_t)grid->choice_count);
+		buffer_put_u8(&file, (uint8_t)grid->scale_count);
+		buffer_put(&file, grid->qualities, grid->choice_count);
+	}
 	sample_file_seal(&file);
 	rc = file.error;
 	if (snprintf(path, sizeof(path), "%s/.work/samples/grid", content_dir) >= PATH_MAX)
@@ -465,8 +552,9 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	return rc;
 }
 
-int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,
-		      const uint32_t point[3], const struct sample_face *faces, uint32_t face_count)
+int samples_store_put(const char *content_dir, struct hash key, const struct sample_grid *grid,
+		      enum sample_state state, const uint32_t point[3],
+		      const struct sample_face *faces, uint32_t face_count)
 {
 	char dir[PATH_MAX - 64], path[PATH_MAX];
 	struct buffer file;
@@ -477,7 +565,7 @@ int samples_store_put(const char *content_dir, struct hash key, enum sample_stat
 	point_path(path, dir, point);
 	buffer_init(&file, SAMPLE_FILE_BYTES_MAX);
 	sample_file_begin(&file, point_magic, key);
-	sample_file_put_point(&file, state, faces, face_count);
+	sample_file_put_point(&file, grid, state, faces, face_count);
 	sample_file_seal(&file);
 	rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
 	buffer_finish(&file);

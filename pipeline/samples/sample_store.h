@@ -22,10 +22,19 @@ enum sample_state {
 	SAMPLE_STATES
 };
 
+enum { SAMPLE_CHOICES_MAX = 5, SAMPLE_SCALES_MAX = 5 };
+
 struct sample_grid {
 	float origin_m[3], spacing_m[3];
 	uint32_t count[3];    /* points per axis, 1 .. SAMPLE_GRID_MAX */
 	uint32_t level_count; /* levels of a face */
+	/* For a release that has to meet a number of bytes, each tile is stored at several
+	 * qualities, ascending, of which one is published. 0 or 1: there is one, no choice. */
+	uint32_t choice_count;
+	uint8_t qualities[SAMPLE_CHOICES_MAX]; /* 1..100; valid if there is a choice */
+	/* With a choice: scales at which the feature points of tiles were counted; 0: they were
+	 * not. */
+	uint32_t scale_count;
 };
 
 /* One face that shows something of the model. */
@@ -37,14 +46,19 @@ struct sample_face {
 	float near_m, far_m;   /* as in brick_page */
 	uint32_t tile_count;   /* at least 1 */
 	const uint16_t *tiles; /* face_tile_index of each, ascending; borrowed */
-	/* For samples_store_put: encoded tiles; borrowed. */
+	/* For samples_store_put: encoded tiles, each at all qualities of the grid, one after the
+	 * other; borrowed. */
 	const struct bytes *objects;
+	/* Feature points of each tile at each scale of the grid; borrowed; NULL: no scales. */
+	const uint32_t (*features)[SAMPLE_SCALES_MAX];
 	/* Set by samples_store_next instead: hashes and sizes of the encoded tiles, the file that
 	 * holds them, and their offsets in it; all borrowed. */
 	const struct hash *hashes;
 	const uint32_t *sizes;
 	const char *path;
 	const uint64_t *offsets;
+	/* The sizes of tile i at quality c of the grid, [i * SAMPLE_CHOICES_MAX + c]; borrowed. */
+	const uint32_t *choice_sizes;
 };
 
 struct samples_store;
@@ -70,6 +84,14 @@ must_check int samples_store_next(struct samples_store *store, struct sample_fac
 void samples_store_rewind(struct samples_store *store);
 /* Returns the state of a point of a store that samples_store_open has opened. */
 enum sample_state samples_store_state(const struct samples_store *store, const uint32_t point[3]);
+/* Chooses a quality of the grid for each tile, counted in the order of samples_store_next, which
+ * then gives those. At first they are those that were kept, or else the best. choices are copied.
+ * Returns -ENOMEM. */
+must_check int samples_store_choose(struct samples_store *store, const uint8_t *choices,
+				    uint32_t count);
+/* Keeps what was chosen for the next samples_store_open, in the file `chosen`. Errors of the disk.
+ */
+must_check int samples_store_keep_choice(const struct samples_store *store);
 /* Counts the points in each state, for reports. */
 void samples_store_states(const struct samples_store *store, uint32_t counts[SAMPLE_STATES]);
 
@@ -85,9 +107,10 @@ bool samples_store_has(struct samples_store *store, const uint32_t point[3]);
 /* Gets the size and the time of change of a point's file. -ENOENT and other errors of stat. */
 must_check int samples_store_stat(const struct samples_store *store, const uint32_t point[3],
 				  struct stat *out);
-/* Writes the file of a point. faces: face_count of them, in ascending order of face, for
- * SAMPLE_RENDERED; none for other states. */
-must_check int samples_store_put(const char *content_dir, struct hash key, enum sample_state state,
+/* Writes the file of a point of this grid. faces: face_count of them, in ascending order of face,
+ * for SAMPLE_RENDERED; none for other states. */
+must_check int samples_store_put(const char *content_dir, struct hash key,
+				 const struct sample_grid *grid, enum sample_state state,
 				 const uint32_t point[3], const struct sample_face *faces,
 				 uint32_t face_count);
 

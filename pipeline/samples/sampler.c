@@ -122,7 +122,11 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 		buffer_put_u32(&text, grid->count[i]);
 	}
 	buffer_put_u32(&text, grid->level_count);
-	buffer_put_u32(&text, sampling->content->quality);
+	if (grid->choice_count > 1) {
+		buffer_put(&text, grid->qualities, grid->choice_count);
+		buffer_put_u8(&text, (uint8_t)grid->scale_count);
+	}
+	buffer_put_u32(&text, grid->choice_count > 1 ? 0 : sampling->content->quality);
 	if (sampling->content->effort != TILE_THOROUGH)
 		buffer_put_u8(&text, (uint8_t)sampling->content->effort);
 	key = hash_of(buffer_bytes(&text));
@@ -182,27 +186,31 @@ static int judge_point(const struct sampling *sampling, const struct sight *sigh
 struct taken {
 	struct shot shots[CUBE_FACES];
 	struct sample_face faces[CUBE_FACES];
-	struct bytes objects[CUBE_FACES][FACE_TILES_MAX];
+	struct bytes objects[CUBE_FACES][FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
 };
 
-static void describe_face(struct taken *taken, uint32_t n, int face, uint32_t level_count)
+static void describe_face(struct taken *taken, uint32_t n, int face, const struct sample_grid *grid)
 {
 	const struct shot *shot = &taken->shots[face];
+	const uint32_t choices = grid->choice_count > 1 ? grid->choice_count : 1;
 	uint32_t start = 0;
 
-	for (uint32_t i = 0; i < shot->tile_count; i++) {
+	for (uint32_t i = 0; i < shot->tile_count * choices; i++) {
 		taken->objects[face][i] =
 			(struct bytes){ shot->objects.data + start, shot->end_of[i] - start };
 		start = shot->end_of[i];
 	}
-	taken->faces[n] = (struct sample_face){ .face = face,
-						.level_count = level_count,
-						.coverage = shot->coverage,
-						.near_m = shot->near_m,
-						.far_m = shot->far_m,
-						.tile_count = shot->tile_count,
-						.tiles = shot->tiles,
-						.objects = taken->objects[face] };
+	taken->faces[n] = (struct sample_face){
+		.face = face,
+		.level_count = grid->level_count,
+		.coverage = shot->coverage,
+		.near_m = shot->near_m,
+		.far_m = shot->far_m,
+		.tile_count = shot->tile_count,
+		.tiles = shot->tiles,
+		.objects = taken->objects[face],
+		.features = (const uint32_t(*)[SAMPLE_SCALES_MAX])shot->features
+	};
 }
 
 /* Renders the six faces. Returns how many show anything, or a negative errno; *state is
@@ -221,7 +229,7 @@ static int take_faces(const struct sampling *sampling, struct face_renderer *ren
 		covered += taken->shots[face].covered;
 		backs += taken->shots[face].backs;
 		if (taken->shots[face].tile_count)
-			describe_face(taken, count++, face, sampling->grid.level_count);
+			describe_face(taken, count++, face, &sampling->grid);
 	}
 	*state = count ? SAMPLE_RENDERED : SAMPLE_EMPTY;
 	if ((double)backs <= backs_solid * (double)covered)
@@ -248,8 +256,8 @@ static int take_point(const struct sampling *sampling, struct face_renderer *ren
 	}
 	if (rc < 0)
 		return rc;
-	return samples_store_put(sampling->content->folder, sampling->key, state, point,
-				 taken->faces, (uint32_t)count);
+	return samples_store_put(sampling->content->folder, sampling->key, &sampling->grid, state,
+				 point, taken->faces, (uint32_t)count);
 }
 
 /* Processes points until none is left, and writes a byte into the pipe for each. */
@@ -286,13 +294,16 @@ static int run_child(const struct sampling *sampling, uint32_t jobs, int done_fd
 						 .drawn = sampling->drawing,
 						 .level_count = sampling->grid.level_count,
 						 .quality = (int)sampling->content->quality,
-						 .effort = sampling->content->effort };
+						 .effort = sampling->content->effort,
+						 .choice_count = sampling->grid.choice_count,
+						 .scale_count = sampling->grid.scale_count };
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	struct headless *headless = NULL;
 	struct face_renderer *renderer = NULL;
 	char threads[24];
 	int rc = 0;
 
+	memcpy(options.qualities, sampling->grid.qualities, sizeof(options.qualities));
 	/* Otherwise a software rasteriser starts one thread per core in every process. */
 	snprintf(threads, sizeof(threads), "%ld", cores > (long)jobs ? cores / (long)jobs : 1);
 	setenv("LP_NUM_THREADS", threads, 0);
@@ -419,6 +430,17 @@ static int sample(struct sampling *sampling, struct scans *scans,
 	return rc;
 }
 
+/* The qualities of which a budget chooses: each takes about half as many bytes again as the one
+ * before, or twice as many (docs/quality.md). */
+static void set_choices(struct sample_grid *grid, const struct content *content)
+{
+	static const uint8_t qualities[SAMPLE_CHOICES_MAX] = { 20, 40, 60, 80, 95 };
+
+	memcpy(grid->qualities, qualities, sizeof(qualities));
+	grid->choice_count = SAMPLE_CHOICES_MAX;
+	grid->scale_count = content->quality_by_features ? SAMPLE_SCALES_MAX : 0;
+}
+
 /* Chooses grid and light for the scans' shape, and the key. */
 static int prepare(struct sampling *sampling, struct scans *scans, const struct scans_shape *shape,
 		   const struct sampler_options *options, struct diagnostics *diagnostics)
@@ -429,11 +451,18 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 
 	if (rc < 0)
 		return rc;
+	if (content->budget_bytes > 0 && content->quality_by_features && shape->has_textures)
+		return diagnostics_add(
+			diagnostics, -EINVAL, content->folder, 0,
+			"[samples] quality = features counts features of depth, which "
+			"faces of scans with pictures do not have; write uniform");
 	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
 	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));
 	sampler_grid(&sampling->grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);
+	if (content->budget_bytes > 0)
+		set_choices(&sampling->grid, content);
 	sampling->key = make_key(sampling, mesh_key, options->master);
 	return 0;
 }

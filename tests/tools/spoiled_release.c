@@ -66,7 +66,7 @@ int main(int argc, char **argv)
 	info.folder = tiny.content;
 	CHECK(object_store_create(&objects) == 0);
 	spoiled_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
-	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
+	CHECK(tiny_publish_samples(&tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(info_build(&built, &info) == 0);
 	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILD_COUNT) ==

@@ -94,7 +94,7 @@ static int publish_and_verify(struct bytes body)
 
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
-	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
+	CHECK(tiny_publish_samples(&tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
 	add_info_page(objects, body, &children[ROOT_CHILD_INFO]);
 	CHECK(publish_parts(&report, &target, objects, &tiny.root, children, ROOT_CHILD_COUNT) ==
 	      0);

@@ -89,7 +89,7 @@ static int publish_and_verify(const char *part, uint32_t triangles, uint32_t gro
 
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
-	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
+	CHECK(tiny_publish_samples(&tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(info_build(&built, &info) == 0);
 	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	add_page(objects, part, triangles, groups, &children[ROOT_CHILD_LABELS]);

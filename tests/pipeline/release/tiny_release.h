@@ -101,11 +101,23 @@ static inline void tiny_samples(const struct tiny *tiny, uint8_t shade, uint8_t 
 		faces[1] = faces[0];
 		faces[1].face = 4;
 		faces[1].tile_count = 1;
-		CHECK(samples_store_put(tiny->content, (struct hash){ { key } }, SAMPLE_RENDERED,
-					(uint32_t[3]){ x, 0, 0 }, faces, 2) == 0);
+		CHECK(samples_store_put(tiny->content, (struct hash){ { key } }, &grid,
+					SAMPLE_RENDERED, (uint32_t[3]){ x, 0, 0 }, faces, 2) == 0);
 		buffer_finish(&encoded[0]);
 		buffer_finish(&encoded[1]);
 	}
+}
+
+static inline int tiny_publish_samples(const struct tiny *tiny, struct object_store *objects,
+				       struct page_child *out)
+{
+	struct samples_store *store;
+	int rc = samples_store_open(&store, tiny->content);
+
+	if (rc == 0)
+		rc = publish_samples(objects, store, out);
+	samples_store_close(store);
+	return rc;
 }
 
 static inline void tiny_group(struct object_store *objects, struct page_child *out, uint16_t seed)
@@ -219,7 +231,7 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 	target.pack_bytes = 3000; /* several packs even of this */
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
-	CHECK(publish_samples(objects, tiny->content, &children[ROOT_CHILD_SAMPLES]) == 0);
+	CHECK(tiny_publish_samples(tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(info_build(&built, &info) == 0);
 	CHECK(publish_info(objects, &built, tiny->content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_parts(&report, &target, objects, &tiny->root, children, ROOT_CHILD_COUNT) ==

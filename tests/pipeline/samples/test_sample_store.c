@@ -51,7 +51,7 @@ static int put_point(uint32_t x, uint32_t y, struct hash with)
 	faces[1] = faces[0];
 	faces[1].face = 5;
 	faces[1].tile_count = 1;
-	return samples_store_put(dir, with, SAMPLE_RENDERED, point, faces, 2);
+	return samples_store_put(dir, with, &grid, SAMPLE_RENDERED, point, faces, 2);
 }
 
 static bool has(const uint32_t point[3])
@@ -80,10 +80,10 @@ static void is_incomplete_until_every_point_is_there(void **state)
 				CHECK(put_point(x, y, key) == 0);
 	CHECK(samples_store_open(&store, dir) == -ENOENT && !store);
 	CHECK(!has(last));
-	CHECK(samples_store_put(dir, other_key, SAMPLE_INSIDE, last, NULL, 0) == 0);
+	CHECK(samples_store_put(dir, other_key, &grid, SAMPLE_INSIDE, last, NULL, 0) == 0);
 	CHECK(samples_store_open(&store, dir) == -ENOENT && !store); /* of another key */
 	CHECK(!has(last));
-	CHECK(samples_store_put(dir, key, SAMPLE_INSIDE, last, NULL, 0) == 0);
+	CHECK(samples_store_put(dir, key, &grid, SAMPLE_INSIDE, last, NULL, 0) == 0);
 	CHECK(samples_store_open(&store, dir) == 0);
 	samples_store_close(store);
 }
