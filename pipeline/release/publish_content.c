@@ -189,15 +189,15 @@ static int publish_objects(struct publish_content_report *report,
 	scans_drop_mesh(sources_scans(sources));
 	if (rc > 0)
 		child_count = ROOT_CHILD_LABELS + 1;
-	if (rc >= 0 && content->budget_bytes > 0)
-		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
-					 content->budget_bytes);
-	samples_store_close(store);
 	if (rc >= 0)
 		rc = publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
 				    &children[child_count]);
 	root.has_stream = rc == 1;
 	child_count += root.has_stream;
+	if (rc >= 0 && content->budget_bytes > 0)
+		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
+					 content->budget_bytes);
+	samples_store_close(store);
 	if (rc >= 0)
 		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);
 	report->published_triangles = root.published_triangles;

@@ -179,7 +179,7 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 	root.has_stream = 1;
 	CHECK(object_store_create(&objects) == 0);
 	add_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
-	CHECK(publish_samples(objects, tiny.content, &children[ROOT_CHILD_SAMPLES]) == 0);
+	CHECK(tiny_publish_samples(&tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
 	CHECK(info_build(&built, &info) == 0);
 	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
