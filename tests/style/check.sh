@@ -65,7 +65,7 @@ is_public() {
 	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
-	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store reference sampling_forecast sampling_trial portrait" ;;
+	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct budget_mesh mesh_ply" ;;
