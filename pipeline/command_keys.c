@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "pipeline/keys/keys_place.h"
+#include "pipeline/keys/keys_tuf.h"
 
 static const char help[] =
 	"gopura-content keys: make the signing keys of a content folder, or show where they are\n"
@@ -20,6 +21,9 @@ static const char help[] =
 	"which lists their public keys and which every terminal needs. Existing keys are never\n"
 	"replaced. `build` and `publish` make missing keys too. Keys that an earlier version made in\n"
 	"DIR/keys are moved out of it.\n"
+	"\n"
+	"  --tuf           also sign releases as The Update Framework does, from the next one on: makes\n"
+	"                  tuf/1.root.json beside the keys, for which root.key must be there\n"
 	"\n"
 	"Keep a copy of root.key in a safe place, off this machine; publishing needs only the other\n"
 	"two. Whoever has release.key can publish to every terminal.\n"
@@ -36,11 +40,12 @@ static void print_key(const char *what, const uint8_t key[KEY_BYTES])
 	printf("  %-10s %s\n", what, hex);
 }
 
-static int run(const char *content_folder, const char *given)
+static int run(const char *content_folder, const char *given, bool tuf)
 {
 	struct publisher_keys keys;
 	char folder[PATH_MAX];
 	bool made;
+	int rc = 0;
 
 	if (keys_open(&keys, folder, content_folder, given, &made) < 0)
 		return EXIT_FAILURE;
@@ -49,24 +54,31 @@ static int run(const char *content_folder, const char *given)
 	print_key("release", keys.release.public_key);
 	print_key("timestamp", keys.timestamp.public_key);
 	printf("give terminals %s/root/1.json\n", folder);
+	if (tuf && (rc = keys_make_tuf_root(folder, &keys)) == 0)
+		printf("give other clients of The Update Framework %s/tuf/1.root.json\n", folder);
 	keys_finish(&keys);
-	return EXIT_SUCCESS;
+	return rc < 0 ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
 int command_keys(int argc, char **argv)
 {
 	static const struct option options[] = {
 		{ "keys", required_argument, NULL, 'K' },
+		{ "tuf", no_argument, NULL, 't' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
 	const char *given = NULL;
+	bool tuf = false;
 	int option;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
 		switch (option) {
 		case 'K':
 			given = optarg;
+			break;
+		case 't':
+			tuf = true;
 			break;
 		case 'h':
 			fputs(help, stdout);
@@ -77,5 +89,5 @@ int command_keys(int argc, char **argv)
 	}
 	if (optind + 1 != argc)
 		return command_wrong(argv[0], "name one content folder", "");
-	return run(argv[optind], given);
+	return run(argv[optind], given, tuf);
 }

@@ -4,6 +4,7 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <sodium.h>
+#include <time.h>
 
 #include "tuf/canonical.h"
 
@@ -43,6 +44,39 @@ int tuf_signer_init(struct tuf_signer *out, const uint8_t seed[32])
 	cJSON_Delete(key);
 	buffer_finish(&canonical);
 	return rc;
+}
+
+cJSON *tuf_content(enum tuf_type type, uint32_t version, int64_t expires_s)
+{
+	const time_t time_s = (time_t)expires_s;
+	cJSON *content = cJSON_CreateObject();
+	char date[32];
+	struct tm tm;
+
+	if (content && gmtime_r(&time_s, &tm) &&
+	    strftime(date, sizeof(date), "%Y-%m-%dT%H:%M:%SZ", &tm) > 0 &&
+	    cJSON_AddStringToObject(content, "_type", tuf_type_names[type]) &&
+	    cJSON_AddStringToObject(content, "spec_version", "1.0.34") &&
+	    cJSON_AddNumberToObject(content, "version", version) &&
+	    cJSON_AddStringToObject(content, "expires", date))
+		return content;
+	cJSON_Delete(content);
+	return NULL;
+}
+
+cJSON *tuf_add_file(cJSON *to, const char *name, uint32_t version, struct bytes file)
+{
+	uint8_t hash[crypto_hash_sha256_BYTES];
+	char hex[2 * sizeof(hash) + 1];
+	cJSON *entry = cJSON_AddObjectToObject(to, name);
+
+	crypto_hash_sha256(hash, file.data, file.size);
+	sodium_bin2hex(hex, sizeof(hex), hash, sizeof(hash));
+	if (!cJSON_AddNumberToObject(entry, "length", (double)file.size) ||
+	    !cJSON_AddStringToObject(cJSON_AddObjectToObject(entry, "hashes"), "sha256", hex) ||
+	    (version > 0 && !cJSON_AddNumberToObject(entry, "version", version)))
+		return NULL;
+	return entry;
 }
 
 void tuf_signer_finish(struct tuf_signer *signer)

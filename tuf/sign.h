@@ -3,7 +3,7 @@
 #ifndef GOPURA_TUF_SIGN_H
 #define GOPURA_TUF_SIGN_H
 
-#include "base/bytes.h"
+#include "tuf/tuf_metadata.h"
 
 struct cJSON;
 
@@ -18,6 +18,13 @@ must_check int tuf_signer_init(struct tuf_signer *out, const uint8_t seed[32]);
 void tuf_signer_finish(struct tuf_signer *signer);
 /* Returns the public key as an entry of keys, owned by the caller; NULL: no memory. */
 struct cJSON *tuf_signer_key(const struct tuf_signer *signer);
+
+/* Returns the content of a file of that type with the members that all have, owned by the caller;
+ * NULL: no memory. */
+struct cJSON *tuf_content(enum tuf_type type, uint32_t version, int64_t expires_s);
+/* Adds what a timestamp or a snapshot says of a metadata file, or targets of a target: its length
+ * and SHA-256; version 0: none. Returns the entry, borrowed; NULL: no memory. */
+struct cJSON *tuf_add_file(struct cJSON *to, const char *name, uint32_t version, struct bytes file);
 
 /* Appends a whole file to out: content, which becomes the member "signed", and one signature of
  * each signer. The same content and keys give the same bytes. Returns as canonical_write. */

@@ -205,6 +205,11 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
+int keys_read_root_key(struct signing_key *out, const char *folder)
+{
+	return has_key(folder, META_ROOT) ? read_key(out, folder, META_ROOT) : -ENOENT;
+}
+
 /* Keys are created in this order. So a folder that has a later key without an earlier one is not an
  * interrupted run: somebody removed the earlier one. */
 static int judge_order(const char *folder)

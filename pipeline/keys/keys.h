@@ -36,6 +36,9 @@ must_check int keys_sync_parent(const char *folder);
 must_check int keys_load(struct publisher_keys *out, const char *folder);
 void keys_finish(struct publisher_keys *keys); /* Wipes the keys. NULL is fine. */
 
+/* Reads root.key alone. -ENOENT: it is not in the folder. Other errors are logged. */
+must_check int keys_read_root_key(struct signing_key *out, const char *folder);
+
 /* Reads root/VERSION.json into *out, cleared first. -ENOENT: there is none. */
 must_check int keys_read_root(struct buffer *out, const char *folder, uint32_t version);
 

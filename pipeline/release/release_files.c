@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/metadata_sign.h"
+#include "pipeline/release/release_tuf.h"
 
 static int make_path(char path[PATH_MAX], const char *release, const char *name)
 {
@@ -70,7 +71,7 @@ static int replace(struct pending *file, int rc)
 	return rc < 0 ? rc : ended;
 }
 
-static int write_file(const char *release, const char *name, struct bytes bytes)
+int release_files_put(const char *release, const char *name, struct bytes bytes)
 {
 	struct pending file;
 	int rc = replace(&file, prepare(&file, release, name, bytes));
@@ -163,7 +164,7 @@ static int copy_roots(const char *release, const char *keys_folder, uint32_t new
 		snprintf(name, sizeof(name), "root/%u.json", version);
 		rc = keys_read_root(&file, keys_folder, version);
 		if (rc == 0)
-			rc = write_file(release, name, buffer_bytes(&file));
+			rc = release_files_put(release, name, buffer_bytes(&file));
 	}
 	buffer_finish(&file);
 	return rc;
@@ -222,10 +223,13 @@ int release_files_write(const char *release, const char *keys_folder,
 		rc = release_encode(&file, what, &keys->release, 1);
 	snprintf(name, sizeof(name), "history/%" PRIu64 ".json", what->sequence);
 	if (rc == 0)
-		rc = write_file(release, name, buffer_bytes(&file));
+		rc = release_files_put(release, name, buffer_bytes(&file));
 	if (rc == 0)
 		rc = replace_both(release, keys, what->sequence, buffer_bytes(&file),
 				  timestamp_life_s);
+	if (rc == 0)
+		rc = release_tuf_write(release, keys_folder, keys, what, buffer_bytes(&file),
+				       timestamp_life_s);
 	buffer_finish(&file);
 	return rc;
 }
@@ -249,5 +253,7 @@ int release_files_renew(const char *release, const struct publisher_keys *keys,
 				       buffer_bytes(&file), timestamp_life_s);
 	rc = replace(&timestamp, rc);
 	buffer_finish(&file);
-	return rc < 0 ? rc : bytes_sync_folder_of(timestamp.path);
+	if (rc == 0)
+		rc = bytes_sync_folder_of(timestamp.path);
+	return rc < 0 ? rc : release_tuf_renew(release, keys, timestamp_life_s);
 }

@@ -34,4 +34,8 @@ must_check int release_files_write(const char *release, const char *keys_folder,
 must_check int release_files_renew(const char *release, const struct publisher_keys *keys,
 				   int64_t timestamp_life_s);
 
+/* Writes or replaces a file of the release folder, whole or not at all, so that a server tells it
+ * from the one before. Errors are logged. */
+must_check int release_files_put(const char *release, const char *name, struct bytes bytes);
+
 #endif

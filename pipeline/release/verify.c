@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "pipeline/release/verify_pages.h"
+#include "pipeline/release/verify_tuf.h"
 
 enum { ROOTS_MAX = 1000, LOCATOR_BYTES_MAX = 256 << 20 };
 
@@ -100,6 +101,8 @@ static int read_metadata(struct verify_walk *walk, const struct verify_options *
 	if (rc == 0)
 		rc = check_expiry(walk, options->now_s, "timestamp.json",
 				  walk->report->timestamp.expires_s);
+	if (rc == 0) /* file holds release.json */
+		rc = verify_tuf(walk, buffer_bytes(&file), options->now_s);
 	buffer_finish(&file);
 	return rc;
 }

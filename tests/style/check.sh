@@ -25,7 +25,7 @@ may_include() { # its answer is in $answer: a subshell for each of thousands of 
 	render | storage) answer="base format geometry" ;;
 	net) answer="base format storage" ;;
 	app) answer="base format geometry board system render ui input sound storage net" ;;
-	pipeline) answer="base format geometry render storage" ;;
+	pipeline) answer="base format tuf geometry render storage" ;;
 	curator) answer="base format geometry render ui storage pipeline" ;;
 	tests) answer="base format tuf geometry board system render ui input sound storage net app pipeline curator health" ;;
 	esac
@@ -69,7 +69,7 @@ is_public() {
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct budget_mesh mesh_ply" ;;
-	pipeline/keys/*) names="keys keys_place" ;;
+	pipeline/keys/*) names="keys keys_place keys_tuf" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;
 	*) return 0 ;;

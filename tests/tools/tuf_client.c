@@ -5,7 +5,8 @@
  *   tuf_client --metadata-dir DIR --metadata-url URL --target-name PATH --target-base-url URL
  *              --target-dir DIR download
  *
- * Exit status 0: done; 1: not. The workflow is tuf/workflow.h's; files and requests are here. */
+ * With --ca FILE certificates are checked against these authorities. Exit status 0: done; 1: not.
+ * The workflow is tuf/workflow.h's; files and requests are here. */
 #include <curl/curl.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -20,7 +21,7 @@
 #include "tuf/targets.h"
 
 struct options {
-	const char *metadata_dir, *metadata_url, *target_name, *target_url, *target_dir;
+	const char *metadata_dir, *metadata_url, *target_name, *target_url, *target_dir, *ca;
 };
 
 /* ---- files */
@@ -67,7 +68,8 @@ static size_t take(char *data, size_t size, size_t count, void *context)
 	return out->error ? 0 : size * count;
 }
 
-static int get(const char *base, const char *name, struct buffer *out)
+static int get(const struct options *options, const char *base, const char *name,
+	       struct buffer *out)
 {
 	CURL *curl = curl_easy_init();
 	char url[4096];
@@ -77,6 +79,8 @@ static int get(const char *base, const char *name, struct buffer *out)
 	snprintf(url, sizeof(url), "%s%s%s", base, base[strlen(base) - 1] == '/' ? "" : "/", name);
 	curl_easy_setopt(curl, CURLOPT_URL, url);
 	curl_easy_setopt(curl, CURLOPT_PATH_AS_IS, 1L);
+	if (options->ca)
+		curl_easy_setopt(curl, CURLOPT_CAINFO, options->ca);
 	curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
 	curl_easy_setopt(curl, CURLOPT_FAILONERROR, 1L);
 	curl_easy_setopt(curl, CURLOPT_TIMEOUT, 20L);
@@ -96,7 +100,7 @@ static int fetch(void *context, const char *name, struct buffer *out)
 {
 	const struct options *options = context;
 
-	return get(options->metadata_url, name, out);
+	return get(options, options->metadata_url, name, out);
 }
 
 /* ---- commands */
@@ -130,7 +134,7 @@ static int fetch_target(const struct options *options, const struct tuf_target *
 		return 0;
 	}
 	buffer_clear(&file);
-	rc = get(options->target_url, target->file, &file);
+	rc = get(options, options->target_url, target->file, &file);
 	if (rc == 0 && !tuf_target_is(target, buffer_bytes(&file)))
 		rc = -EBADMSG;
 	if (rc == 0)
@@ -166,6 +170,7 @@ int main(int argc, char **argv)
 					       { "target-name", required_argument, NULL, 'n' },
 					       { "target-base-url", required_argument, NULL, 'b' },
 					       { "target-dir", required_argument, NULL, 'd' },
+					       { "ca", required_argument, NULL, 'c' },
 					       { 0 } };
 	struct options options = { 0 };
 	const char *command;
@@ -173,6 +178,9 @@ int main(int argc, char **argv)
 
 	while ((option = getopt_long(argc, argv, "", known, NULL)) != -1) {
 		switch (option) {
+		case 'c':
+			options.ca = optarg;
+			break;
 		case 'm':
 			options.metadata_dir = optarg;
 			break;

@@ -1,0 +1,16 @@
+/* The root of The Update Framework for the publisher's keys (docs/tuf.md): FOLDER/tuf/1.root.json,
+ * beside root/1.json. root.key signs roots, release.key targets and snapshots, timestamp.key
+ * timestamps. Tools of The Update Framework may put 2.root.json and later ones beside it. */
+#ifndef GOPURA_PIPELINE_KEYS_KEYS_TUF_H
+#define GOPURA_PIPELINE_KEYS_KEYS_TUF_H
+
+#include "pipeline/keys/keys.h"
+
+/* Makes and signs the first root, valid as long as the newest root/N.json. Where there is one
+ * already it stays. -ENOENT: root.key is not in the folder. Errors are logged. */
+must_check int keys_make_tuf_root(const char *folder, const struct publisher_keys *keys);
+
+/* Reads tuf/VERSION.root.json into *out, cleared first. -ENOENT: there is none. */
+must_check int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version);
+
+#endif
