@@ -7,7 +7,7 @@
 #include "base/bytes.h"
 #include "format/stream_mesh.h"
 
-enum { STREAM_BLOCK_RECORDS = 1024 };
+enum { STREAM_BLOCK_RECORDS = 512 };
 
 /* A whole stream, before it is encoded. */
 struct stream_source {

@@ -93,16 +93,30 @@ static uint32_t find_in(const struct link *link, uint32_t vertex)
 	return STREAM_NONE;
 }
 
+/* Returns how many triangles run from a to b to c. */
+static uint32_t count_runs(const struct work *work, uint32_t a, uint32_t b, uint32_t c)
+{
+	uint32_t count = 0;
+
+	for (uint32_t at = work->first[a]; at != STREAM_NONE; at = work->next[at]) {
+		uint32_t next = work->triangles[at / 3][(at % 3 + 1) % 3];
+		uint32_t before = work->triangles[at / 3][(at % 3 + 2) % 3];
+
+		count += next == b && before == c;
+	}
+	return count;
+}
+
 enum link_state { LINK_BROKEN, LINK_PINCHED, LINK_HOLDS };
 
 /* The link condition: no common neighbour but the third corners of the edge's triangles; otherwise
- * the surface is pinched. Broken: a third corner keeps no other triangle at the target, or there is
- * an edge opposite to both, so that no record can express it. */
+ * the surface is pinched. Broken, so that no record can express it: a third corner keeps no other
+ * triangle at the target, a triangle is there twice, or there is an edge opposite to both. */
 static enum link_state link_condition(const struct work *work, uint32_t gone, uint32_t target,
 				      const struct link *gone_link, const struct link *target_link,
 				      uint32_t at_edge)
 {
-	uint32_t common = 0, thirds = 0;
+	uint32_t common = 0, thirds = 0, there, back;
 
 	for (uint32_t i = 0; i < gone_link->count; i++)
 		common += find_in(target_link, gone_link->vertices[i]) != STREAM_NONE;
@@ -114,7 +128,11 @@ static enum link_state link_condition(const struct work *work, uint32_t gone, ui
 			x = next == target ? before : next;
 			g = find_in(gone_link, x);
 			t = find_in(target_link, x);
-			if (gone_link->triangles[g] + target_link->triangles[t] < 3)
+			there = count_runs(work, gone, target, x);
+			back = count_runs(work, gone, x, target);
+			if (there > 1 || back > 1 ||
+			    gone_link->triangles[g] + target_link->triangles[t] <
+				    2 * (there + back) + 1)
 				return LINK_BROKEN;
 			thirds++;
 			continue;

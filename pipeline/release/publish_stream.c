@@ -162,6 +162,16 @@ static void take_triangles(struct stream_cut *out, const uint32_t *numbers, uint
 	out->triangle_count = kept;
 }
 
+/* The errors of the coarsest groups may be far above what is seen, so there is a limit: a step is
+ * at most a 2048th of the longest side, about a pixel. */
+static int zeros_for(const struct lattice *lattice, float error_m)
+{
+	const int zeros = precision_zeros_for(error_m, lattice->step_m);
+	const int most = LATTICE_BITS + lattice->fine_bits - 11;
+
+	return zeros < most ? zeros : most;
+}
+
 static int read_cut(struct stream_cut *out, struct object_store *objects,
 		    const struct lattice *lattice, const struct page *page,
 		    const struct hierarchy *hierarchy, uint32_t most_triangles)
@@ -169,7 +179,7 @@ static int read_cut(struct stream_cut *out, struct object_store *objects,
 	const int32_t places = 1 << (LATTICE_BITS + lattice->fine_bits);
 	const uint32_t groups = choose_groups(hierarchy, most_triangles);
 	const uint32_t triangles = cut_triangles(hierarchy, groups);
-	const int zeros = precision_zeros_for(cut_error_m(hierarchy, groups), lattice->step_m);
+	const int zeros = zeros_for(lattice, cut_error_m(hierarchy, groups));
 	struct soup soup;
 	int rc = soup_init(&soup, triangles);
 
@@ -262,7 +272,7 @@ static int add_page(struct object_store *objects, const struct stream_cut *cut,
 	return rc;
 }
 
-const struct stream_options stream_publish_options = { .base_vertices = 1024, .loose = true };
+const struct stream_options stream_publish_options = { .base_vertices = 512, .loose = true };
 
 int publish_stream(struct object_store *objects, const struct lattice *lattice,
 		   const struct page_child *hierarchy, struct page_child *out)
@@ -284,6 +294,11 @@ int publish_stream(struct object_store *objects, const struct lattice *lattice,
 			rc = 1;
 	}
 	stream_cut_finish(&cut);
+	if (rc == -EINVAL) {
+		log_warn("pipeline", "the coarse cut cannot be encoded as a streaming mesh, so the "
+				     "release has none");
+		rc = 0;
+	}
 	if (rc < 0)
 		log_error("pipeline", "the streaming mesh: %s", strerror(-rc));
 	buffer_finish(&stream);

@@ -8,7 +8,7 @@
 #include "pipeline/release/object_store.h"
 
 enum {
-	STREAM_CUT_TRIANGLES = 20000 /* of the cut that it reproduces, at most */
+	STREAM_CUT_TRIANGLES = 6000 /* of the cut that it reproduces, at most */
 };
 
 /* How the published stream is made (docs/stream.md has the figures). */
@@ -32,7 +32,7 @@ must_check int stream_cut_read(struct stream_cut *out, struct object_store *obje
 void stream_cut_finish(struct stream_cut *cut); /* zeroed is fine */
 
 /* Adds the stream page and its blocks. Returns 1 if *out is set, 0 if the cut is too large for one
- * mesh. Errors are logged. */
+ * mesh or cannot be encoded; a release needs no stream. Errors are logged. */
 must_check int publish_stream(struct object_store *objects, const struct lattice *lattice,
 			      const struct page_child *hierarchy, struct page_child *out);
 

@@ -213,7 +213,10 @@ static void send_for(struct stage *stage, int64_t now_us)
 	struct message_want wants[2 * STAGE_IN_FLIGHT];
 	size_t count = scene_wants(stage->scene, wants, 2 * STAGE_IN_FLIGHT);
 	const uint64_t rate = stage->options.bits_a_second;
-	uint64_t ahead = 0, window = WINDOW_BYTES;
+	uint64_t ahead = 0, window = stage->options.window_bytes;
+
+	if (window == 0)
+		window = WINDOW_BYTES;
 
 	/* A fetcher does not wait for frames: in a long one the line carries more. */
 	if (stage->options.work_clock)

@@ -26,6 +26,7 @@ struct stage_options {
 	uint32_t frame_us;      /* between frames of the stage's clock; 0: 16667 */
 	uint64_t bits_a_second; /* 0: what is asked for is there in the next frame */
 	uint32_t latency_us;
+	uint64_t window_bytes; /* asked for ahead; 0: 64 KiB */
 };
 
 /* An object asked for and not there yet. */

@@ -278,6 +278,55 @@ static void loose_pieces_become_smaller_where_that_is_allowed(void **state)
 	soup_finish(&soup);
 }
 
+/* Whatever triangles share vertices: fans, sheets from both sides, edges of five triangles. */
+static void any_tangle_of_triangles_can_be_streamed(void **state)
+{
+	(void)state;
+	for (uint32_t seed = 1; seed <= 400; seed++) {
+		struct stream_decoder *decoder;
+		struct stream_stats stats;
+		struct buffer bytes;
+		struct soup soup;
+		uint32_t number = seed * 2654435761u;
+
+		soup_init(&soup);
+		for (uint32_t i = 0; i < 10 + seed % 30; i++) {
+			number = number * 1664525 + 1013904223;
+			add_vertex(&soup, number >> 24, number >> 16 & 255, number >> 8 & 255);
+		}
+		for (uint32_t i = 0; i < 2 * soup.vertex_count; i++) {
+			uint32_t c[3];
+			bool known = false;
+
+			for (int k = 0; k < 3; k++) {
+				number = number * 1664525 + 1013904223;
+				c[k] = (number >> 16) % soup.vertex_count;
+			}
+			if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
+				continue;
+			for (uint32_t t = 0; t < soup.triangle_count; t++)
+				for (int k = 0; k < 3; k++)
+					known |= soup.triangles[t][k] == c[0] &&
+						 soup.triangles[t][(k + 1) % 3] == c[1] &&
+						 soup.triangles[t][(k + 2) % 3] == c[2];
+			if (known)
+				continue;
+			add_triangle(&soup, c[0], c[1], c[2]);
+			if (i % 4 == 0)
+				add_triangle(&soup, c[0], c[2], c[1]); /* its back */
+		}
+		make_as(&bytes, &stats, &soup, 4, true);
+		CHECK(stream_decoder_create(&decoder) == 0);
+		CHECK(stream_decoder_advance(decoder, buffer_bytes(&bytes)) == 0);
+		check_whole(stream_decoder_mesh(decoder), &soup);
+		stream_decoder_show(decoder, stats.record_count / 2);
+		check_valid(stream_decoder_mesh(decoder));
+		stream_decoder_destroy(decoder);
+		buffer_finish(&bytes);
+		soup_finish(&soup);
+	}
+}
+
 static void errors_say_how_much_each_block_adds(void **state)
 {
 	static struct stream_stats stats;
@@ -387,6 +436,7 @@ int main(void)
 		cmocka_unit_test(the_whole_stream_is_the_input_bit_for_bit),
 		cmocka_unit_test(every_prefix_of_a_closed_surface_is_closed),
 		cmocka_unit_test(loose_pieces_become_smaller_where_that_is_allowed),
+		cmocka_unit_test(any_tangle_of_triangles_can_be_streamed),
 		cmocka_unit_test(errors_say_how_much_each_block_adds),
 		cmocka_unit_test(a_truncated_stream_keeps_its_whole_blocks),
 		cmocka_unit_test(a_damaged_block_is_refused_and_the_prefix_kept),

@@ -76,7 +76,7 @@ static inline void little_stream(struct little_release *r, bool spoiled)
 				       (struct bytes){ r->objects[i].bytes, r->objects[i].size },
 				       NULL) == 0);
 	CHECK(stream_cut_read(&cut, objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
-			      STREAM_CUT_TRIANGLES) == 0);
+			      UINT32_MAX) == 0);
 	children[page.child_count] = little_stream_page(r, &cut, spoiled);
 	root.has_stream = 1;
 	buffer_init(&payload, PAGE_BYTES_MAX);
