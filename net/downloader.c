@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/page.h"
+#include "net/line_rate.h"
 #include "net/locators.h"
 #include "net/range_plan.h"
 #include "net/ranges.h"
@@ -24,11 +25,17 @@ enum {
 	RANGES_FOR_PAGES = 2,
 	/* bytes to read and discard rather than send a new request (its cost, and a little more) */
 	GAP_BYTES = 512,
-	RANGE_BYTES_MIN = 64 << 10,
+	/* A turn is what the line carries in the waiting time. A range is a quarter of it, so that
+	 * another can be on its way while one arrives. */
+	TURN_BYTES_MIN = 16 << 10,
+	RANGES_A_TURN = 4,
 	RANGE_BYTES_MAX = 1 << 20,
-	/* a range should take about this long, so that more urgent requests do not wait longer */
-	RANGE_MS = 250,
-	CACHE_READS_MAX = 64, /* per call: other sources share the loop */
+	LATER_BYTES_MIN = 64 << 10, /* a range for later, however low its rate */
+	/* of the waiting time, what the most urgent object may wait for others of its range */
+	AHEAD_SHARE = 10,
+	WAIT_MS = 500,
+	FIRST_BYTES_PER_S = 1 << 20, /* assumed before the line was measured */
+	CACHE_READS_MAX = 64,        /* per call: other sources share the loop */
 };
 
 struct downloader {
@@ -40,8 +47,14 @@ struct downloader {
 	int64_t plan_due_ms; /* when the first retry pause ends; INT64_MAX: no want is pausing */
 	struct range_item *items; /* scratch memory for planning */
 	uint32_t item_room;
-	struct buffer scratch;               /* holds one object read from the cache */
-	bool was_down;                       /* all wants were reported as offline */
+	struct buffer scratch; /* holds one object read from the cache */
+	bool was_down;         /* all wants were reported as offline */
+	struct line_rate line;
+	uint32_t wait_ms; /* of one turn */
+	/* A range waits until what is ahead of it fits into a turn: its priority and size; 0: none
+	 * does. */
+	uint32_t held_priority;
+	uint64_t held_bytes;
 	struct token_bucket rate_limit;      /* for releases that are not shown yet */
 	bool later_waits;                    /* something waits only for the rate limit */
 	struct downloader_counters counters; /* without those that ranges keeps */
@@ -360,6 +373,28 @@ static bool may_request(const struct downloader *downloader, uint32_t priority)
 	return downloader->ranges.count < most && link_may_request(downloader->options.link);
 }
 
+/* Returns the bytes of a turn: what is asked for and not here yet, of what is equally urgent. */
+static uint64_t turn_bytes(const struct downloader *downloader)
+{
+	uint64_t bytes = line_rate_carries(&downloader->line, downloader->wait_ms);
+
+	return bytes > TURN_BYTES_MIN ? bytes : TURN_BYTES_MIN;
+}
+
+/* Returns whether a range of so many bytes is part of this turn. What is less urgent does not
+ * count: an urgent object shares the line with it. */
+static bool fits_turn(const struct downloader *downloader, uint32_t priority, uint64_t bytes)
+{
+	const uint64_t ahead = ranges_ahead(&downloader->ranges, priority);
+
+	return ahead == 0 || ahead + bytes <= turn_bytes(downloader);
+}
+
+static uint64_t span_of(const struct range_item *items, size_t count)
+{
+	return items[count - 1].place + items[count - 1].size - items[0].place;
+}
+
 /* Returns the highest priority among items that no range has taken yet; 0 if none is left. */
 static uint32_t best_priority(const struct range_item *items, size_t count)
 {
@@ -384,15 +419,17 @@ static uint32_t later_bytes(const struct range_item *items, size_t count)
 /* Limits for a range whose most urgent object has this priority. */
 static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
 {
-	uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
-	uint64_t most = downloader->ranges.bytes_per_s;
+	const uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
+	const uint64_t ahead = turn_bytes(downloader) / AHEAD_SHARE;
+	uint64_t most = turn_bytes(downloader) / RANGES_A_TURN;
 
-	most = (rate > 0 && rate < most ? rate : most) * RANGE_MS / 1000;
-	if (most < RANGE_BYTES_MIN)
-		most = RANGE_BYTES_MIN;
+	if (rate > 0 && rate < most)
+		most = rate < LATER_BYTES_MIN ? LATER_BYTES_MIN : rate;
 	if (most > RANGE_BYTES_MAX)
 		most = RANGE_BYTES_MAX;
-	return (struct range_limits){ .gap_bytes = GAP_BYTES, .most_bytes = (uint32_t)most };
+	return (struct range_limits){ .gap_bytes = GAP_BYTES,
+				      .most_bytes = (uint32_t)most,
+				      .ahead_bytes = (uint32_t)ahead };
 }
 
 static void request_ranges(struct downloader *downloader)
@@ -409,6 +446,7 @@ static void request_ranges(struct downloader *downloader)
 		return;
 	count = gather(downloader);
 	downloader->plan_changed = false;
+	downloader->held_bytes = 0;
 	/* The most urgent item decides whether another range may be requested. */
 	while (best = best_priority(downloader->items, count),
 	       (taken = range_plan(downloader->items, count, limits_now(downloader, best),
@@ -419,6 +457,11 @@ static void request_ranges(struct downloader *downloader)
 		}
 		if (!may_request(downloader, best)) {
 			downloader->plan_changed = true;
+			return;
+		}
+		if (!fits_turn(downloader, best, span_of(&downloader->items[first], taken))) {
+			downloader->held_priority = best;
+			downloader->held_bytes = span_of(&downloader->items[first], taken);
 			return;
 		}
 		if (ranges_request(&downloader->ranges, &downloader->items[first], taken) == 0)
@@ -451,6 +494,11 @@ static void report_link(struct downloader *downloader)
 
 void downloader_work(struct downloader *downloader)
 {
+	line_rate_note(&downloader->line, http_received_bytes(downloader->options.http),
+		       downloader->options.link->in_flight > 0);
+	if (downloader->held_bytes > 0 &&
+	    fits_turn(downloader, downloader->held_priority, downloader->held_bytes))
+		downloader->plan_changed = true;
 	look_up_queued(downloader);
 	locators_work(&downloader->locators);
 	report_link(downloader);
@@ -527,6 +575,8 @@ int downloader_create(struct downloader **out, const struct downloader_options *
 	downloader->options = *options;
 	downloader->plan_due_ms = INT64_MAX;
 	token_bucket_init(&downloader->rate_limit, options->rate_limit);
+	line_rate_init(&downloader->line, FIRST_BYTES_PER_S);
+	downloader->wait_ms = options->wait_ms > 0 ? options->wait_ms : WAIT_MS;
 	ranges_init(&downloader->ranges, &ranges);
 	locators_init(&downloader->locators, &locators);
 	buffer_init(&downloader->scratch, OBJECT_BYTES_MAX);

@@ -31,6 +31,7 @@ struct downloader_options {
 	struct link *link;
 	struct stick *stick; /* asked before the server; NULL: none */
 	uint64_t rate_limit; /* average bytes per second for releases not shown yet; 0: no limit */
+	uint32_t wait_ms;    /* one turn of requests takes about so long; 0: half a second */
 	struct downloader_events events;
 	void *data;
 };

@@ -473,6 +473,7 @@ static int create_modules(struct fetch *fetch)
 				       .budget_bytes = options->cache_budget_bytes };
 	struct downloader_options downloader = { .link = &fetch->link,
 						 .rate_limit = options->rate_limit,
+						 .wait_ms = options->wait_ms,
 						 .events = { on_object, on_missing, has_room },
 						 .data = fetch };
 	struct poll_options poll = {

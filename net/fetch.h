@@ -23,6 +23,7 @@ struct fetch_options {
 	/* seconds between checks for a new release */
 	uint32_t poll_s;
 	uint64_t rate_limit; /* bytes per second for a release that is not shown yet; 0: no limit */
+	uint32_t wait_ms;    /* what is asked for at once takes about so long; 0: half a second */
 	uint32_t stall_s;    /* seconds without data before a request fails; 0: the default */
 };
 

@@ -30,6 +30,7 @@ static const char help[] =
 	"  --poll-s SECONDS    interval of looking for a new release (default: 60)\n"
 	"  --rate-limit KIB    mean KiB per second for a release that is not shown yet\n"
 	"                      (default: no limit)\n"
+	"  --wait-ms MS        what is requested at once takes about so long (default: 500)\n"
 	"  --stall-s SECONDS   time without a byte after which a request has failed (default: 15)\n"
 	"  --verbose           log debug messages\n"
 	"  --help, --version\n"
@@ -52,6 +53,7 @@ enum {
 	OPTION_REDIRECT_HOSTS,
 	OPTION_POLL,
 	OPTION_RATE_LIMIT,
+	OPTION_WAIT,
 	OPTION_STALL,
 	OPTION_VERBOSE,
 	OPTION_VERSION,
@@ -71,6 +73,7 @@ static const struct option long_options[] = {
 	{ "redirect-hosts", required_argument, NULL, OPTION_REDIRECT_HOSTS },
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
 	{ "rate-limit", required_argument, NULL, OPTION_RATE_LIMIT },
+	{ "wait-ms", required_argument, NULL, OPTION_WAIT },
 	{ "stall-s", required_argument, NULL, OPTION_STALL },
 	{ "verbose", no_argument, NULL, OPTION_VERBOSE },
 	{ "version", no_argument, NULL, OPTION_VERSION },
@@ -132,6 +135,9 @@ static void take_option(struct fetch_options *options, int option)
 		break;
 	case OPTION_RATE_LIMIT:
 		options->rate_limit = number("rate-limit", optarg, 1, 1 << 24) << 10;
+		break;
+	case OPTION_WAIT:
+		options->wait_ms = (uint32_t)number("wait-ms", optarg, 50, 60000);
 		break;
 	case OPTION_STALL:
 		options->stall_s = (uint32_t)number("stall-s", optarg, 1, 3600);

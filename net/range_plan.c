@@ -48,17 +48,20 @@ static bool may_join(const struct range_item *left, const struct range_item *rig
 
 size_t range_plan(struct range_item *items, size_t count, struct range_limits limits, size_t *first)
 {
-	size_t left = count, right;
+	size_t left = count, right, start;
 
 	for (size_t i = 0; i < count; i++)
 		if (!items[i].taken && (left == count || goes_before(&items[i], &items[left])))
 			left = i;
 	if (left == count)
 		return 0;
-	right = left;
+	right = start = left;
 	for (;;) {
-		bool down = left > 0 && may_join(&items[left - 1], &items[right], &items[left - 1],
-						 &items[left], limits);
+		bool down = left > 0 &&
+			    may_join(&items[left - 1], &items[right], &items[left - 1],
+				     &items[left], limits) &&
+			    (items[left - 1].priority == items[start].priority ||
+			     items[start].place - items[left - 1].place <= limits.ahead_bytes);
 		bool up = right + 1 < count && may_join(&items[left], &items[right + 1],
 							&items[right + 1], &items[right], limits);
 

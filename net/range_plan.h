@@ -26,6 +26,8 @@ struct range_item {
 struct range_limits {
 	uint32_t gap_bytes;  /* maximum gap between neighbours */
 	uint32_t most_bytes; /* maximum size of a request for several objects */
+	/* of less urgent objects that may come before the most urgent one: it waits for them */
+	uint32_t ahead_bytes;
 };
 
 /* Sorts by pack, then by place. */

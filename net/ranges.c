@@ -5,11 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/clock.h"
-
-/* assumed bandwidth before the first measurement */
-enum { FIRST_BYTES_PER_S = 1 << 20 };
-
 struct slot {
 	struct hash hash;
 	uint64_t place;
@@ -21,18 +16,18 @@ struct range {
 	struct range *next, **link;
 	struct ranges *ranges;
 	struct http_request *request;
-	uint32_t wanted;   /* slots with a want that have not arrived yet */
-	size_t count, now; /* number of slots; index of the slot whose bytes arrive now */
-	uint64_t at;       /* place in the pack of the next byte */
-	uint64_t bytes;    /* size of the whole range */
-	int64_t began_ms;
+	uint32_t wanted;      /* slots with a want that have not arrived yet */
+	size_t count, now;    /* number of slots; index of the slot whose bytes arrive now */
+	uint64_t at;          /* place in the pack of the next byte */
+	uint64_t bytes;       /* size of the whole range */
+	uint32_t priority;    /* the highest of its wants */
 	struct buffer object; /* bytes received so far of the current slot */
 	struct slot slots[];
 };
 
 void ranges_init(struct ranges *ranges, const struct ranges_options *options)
 {
-	*ranges = (struct ranges){ .options = *options, .bytes_per_s = FIRST_BYTES_PER_S };
+	*ranges = (struct ranges){ .options = *options };
 }
 
 static void unlink_range(struct range *range)
@@ -105,16 +100,6 @@ static bool on_piece(void *data, struct bytes piece)
 	return !range->object.error; /* the request ends by itself after its last slot */
 }
 
-/* Updates the moving average of the bandwidth. Short ranges measure latency more than bandwidth. */
-static void measure(struct range *range)
-{
-	int64_t took_ms = clock_now_ms() - range->began_ms;
-	uint64_t bytes = range->at - range->slots[0].place;
-	uint64_t rate = bytes * 1000 / (uint64_t)(took_ms > 0 ? took_ms : 1);
-
-	range->ranges->bytes_per_s = (range->ranges->bytes_per_s * 7 + rate) / 8;
-}
-
 static void on_done(void *data, const struct http_result *result)
 {
 	struct range *range = data;
@@ -127,8 +112,6 @@ static void on_done(void *data, const struct http_result *result)
 		link_failed(options->link, http_url(options->http), result->why);
 	else
 		link_answered(options->link);
-	if (range->now == range->count)
-		measure(range);
 	for (size_t i = 0; i < range->count; i++) {
 		struct want *want = detach(&range->slots[i]);
 
@@ -148,11 +131,12 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 			(struct slot){ want->asked.hash, items[i].place, items[i].size, want };
 		want->range = range;
 		want->state = WANT_IN_FLIGHT;
+		if (want->asked.priority > range->priority)
+			range->priority = want->asked.priority;
 	}
 	range->count = count;
 	range->wanted = (uint32_t)count;
 	range->at = items[0].place;
-	range->began_ms = clock_now_ms();
 }
 
 static void link_range(struct ranges *ranges, struct range *range)
@@ -193,6 +177,16 @@ int ranges_request(struct ranges *ranges, const struct range_item *items, size_t
 	fill_slots(range, items, count);
 	link_range(ranges, range);
 	return 0;
+}
+
+uint64_t ranges_ahead(const struct ranges *ranges, uint32_t priority)
+{
+	uint64_t sum = 0;
+
+	for (const struct range *range = ranges->first; range; range = range->next)
+		if (range->priority >= priority)
+			sum += range->bytes - (range->at - range->slots[0].place);
+	return sum;
 }
 
 bool ranges_leave(struct ranges *ranges, struct want *want)

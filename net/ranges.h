@@ -28,7 +28,6 @@ struct ranges {
 	struct range *first;          /* list of the ranges in flight, owned */
 	uint32_t count;               /* ranges in flight */
 	uint64_t bytes;               /* sum of their sizes */
-	uint64_t bytes_per_s;         /* moving average of the bandwidth; positive */
 	uint64_t requests, cancelled; /* since ranges_init */
 };
 
@@ -40,6 +39,9 @@ void ranges_cancel_all(struct ranges *ranges);
 /* Requests items[0 .. count) with one range request. They are sorted, lie in one pack, and
  * item.want is the struct want that waits for each. -ENOMEM: the wants keep waiting. */
 must_check int ranges_request(struct ranges *ranges, const struct range_item *items, size_t count);
+/* Returns how many bytes are still to come of ranges that are at least as urgent: those that hold
+ * an object of that priority, or of a higher one. */
+uint64_t ranges_ahead(const struct ranges *ranges, uint32_t priority);
 /* Removes a want from its range; it waits afterwards. A range without wants is cancelled. Returns
  * true if that happened. Does nothing if the want is in no range. */
 bool ranges_leave(struct ranges *ranges, struct want *want);

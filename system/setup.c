@@ -167,6 +167,8 @@ static void write_fetcher(struct writing *writing)
 		buffer_print(&writing->text, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)
 		buffer_print(&writing->text, " --rate-limit %u", t->rate_limit_kib);
+	if (t->wait_ms > 0)
+		buffer_print(&writing->text, " --wait-ms %u", t->wait_ms);
 	if (t->redirect_hosts[0])
 		buffer_print(&writing->text, " --redirect-hosts %s", t->redirect_hosts);
 	if (has_authority)

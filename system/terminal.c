@@ -37,10 +37,10 @@ enum {
 	AT_CA,
 	AT_ADDRESS = 15,
 	AT_GATEWAY,
-	AT_SSID = 19,
+	AT_SSID = 20,
 	AT_PASSPHRASE,
 	AT_COUNTRY,
-	AT_MDNS = 23,
+	AT_MDNS = 24,
 };
 
 static const struct setting settings[] = {
@@ -140,6 +140,13 @@ static const struct setting settings[] = {
 	  .name = "ntp",
 	  .expects = "up to 4 time servers such as 192.168.1.1, pool.ntp.org",
 	  .set = terminal_set_ntp },
+	{ .section = "network",
+	  .name = "wait_ms",
+	  .expects = "whole milliseconds from 50 to 60000",
+	  .set = settings_whole,
+	  .offset = offsetof(struct terminal, wait_ms),
+	  .least = 50,
+	  .most = 60000 },
 	[AT_SSID] = { .section = "wifi",
 		      .name = "ssid",
 		      .expects = "a network's name of 1 to 32 bytes without control characters",

@@ -47,6 +47,7 @@ struct terminal {
 	uint32_t poll_s;                         /* 60 .. 86400; 0: not set */
 	struct daily download;                   /* local time of day; both ends equal: always */
 	uint32_t rate_limit_kib;                 /* KiB per second; 0: no limit */
+	uint32_t wait_ms;                        /* [network]: 50 .. 60000; 0: not set */
 	/* [panel] */
 	int width_px, height_px; /* 0: the panel's preferred mode */
 	int hz;                  /* whole number; 0: any */

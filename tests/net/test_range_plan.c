@@ -4,7 +4,9 @@
 #include "tests/check.h"
 
 static const struct hash first_pack = { { 1 } }, second_pack = { { 2 } };
-static const struct range_limits limits = { .gap_bytes = 10, .most_bytes = 1000 };
+static const struct range_limits limits = { .gap_bytes = 10,
+					    .most_bytes = 1000,
+					    .ahead_bytes = 1000 };
 
 static struct range_item item(struct hash pack, uint64_t place, uint32_t size, uint32_t priority)
 {
@@ -61,6 +63,24 @@ static void grows_towards_the_higher_priority(void **state)
 	CHECK(range_plan(items, ARRAY_COUNT(items), limits, &first) == 2 && first == 1);
 }
 
+static void the_most_urgent_waits_for_little_only(void **state)
+{
+	const struct range_limits narrow = { .gap_bytes = 10,
+					     .most_bytes = 1000,
+					     .ahead_bytes = 150 };
+	struct range_item items[] = {
+		item(first_pack, 0, 200, 1),
+		item(first_pack, 200, 100, 1),
+		item(first_pack, 300, 100, 9),
+		item(first_pack, 400, 100, 1),
+	};
+	size_t first;
+
+	(void)state;
+	CHECK(range_plan(items, ARRAY_COUNT(items), narrow, &first) == 3 && first == 1);
+	CHECK(range_plan(items, ARRAY_COUNT(items), narrow, &first) == 1 && first == 0);
+}
+
 static void asks_first_for_what_was_wanted_first(void **state)
 {
 	struct range_item items[] = {
@@ -100,6 +120,7 @@ int main(void)
 		cmocka_unit_test(takes_neighbours_across_small_gaps),
 		cmocka_unit_test(stays_within_its_ceiling_but_takes_a_large_object_alone),
 		cmocka_unit_test(grows_towards_the_higher_priority),
+		cmocka_unit_test(the_most_urgent_waits_for_little_only),
 		cmocka_unit_test(asks_first_for_what_was_wanted_first),
 		cmocka_unit_test(keeps_overlapping_places_apart),
 	};

@@ -164,16 +164,18 @@ static void is_cancelled_when_the_last_want_has_left(void **state)
 	CHECK(stage->failed == 0 && stage->ended == 0);
 }
 
-static void measures_what_the_link_carries(void **state)
+static void says_how_much_is_ahead_of_what_is_as_urgent(void **state)
 {
 	struct stage *stage = *state;
-	const uint64_t before = stage->ranges.bytes_per_s;
+	const uint32_t priority = stage->want[0]->asked.priority;
+	const uint64_t all = stage->ranges.bytes;
 
-	server.now_ms += 10000; /* some 300 bytes a second */
-	give_pack(stage, 0, sizeof(stage->pack));
-	end(asked(0), 0);
-	CHECK(stage->ranges.bytes_per_s < before);
-	CHECK(stage->ranges.bytes_per_s >= before / 8 * 7);
+	CHECK(all > 2 * OBJECT_BYTES && ranges_ahead(&stage->ranges, priority) == all);
+	CHECK(ranges_ahead(&stage->ranges, UINT32_MAX) == 0);
+	give_pack(stage, 0, OBJECT_BYTES + 7);
+	CHECK(ranges_ahead(&stage->ranges, priority) == all - OBJECT_BYTES - 7);
+	ranges_cancel_all(&stage->ranges);
+	CHECK(ranges_ahead(&stage->ranges, 0) == 0);
 }
 
 static void keeps_the_wants_waiting_without_memory(void **state)
@@ -198,7 +200,7 @@ int main(void)
 		STAGED(an_answer_that_never_comes_is_the_links_failure),
 		STAGED(reports_without_a_want_what_has_left),
 		STAGED(is_cancelled_when_the_last_want_has_left),
-		STAGED(measures_what_the_link_carries),
+		STAGED(says_how_much_is_ahead_of_what_is_as_urgent),
 		STAGED(keeps_the_wants_waiting_without_memory),
 	};
 

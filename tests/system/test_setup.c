@@ -115,9 +115,10 @@ static void the_fetcher_is_told_what_is_its(void **state)
 	apply(RELEASE
 	      "ca = ca.pem\npoll_s = 300\nrate_limit_kib = 2000\n"
 	      "redirect_hosts = cdn.example cdn2.example:8443\n[terminal]\n"
-	      "name = East gate\ntime_zone = Asia/Phnom_Penh\n[health]\nlisten = [::]:9200\n");
+	      "name = East gate\ntime_zone = Asia/Phnom_Penh\n[health]\nlisten = [::]:9200\n"
+	      "[network]\nwait_ms = 300\n");
 	snprintf(options, sizeof(options),
-		 "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 "
+		 "FETCH_OPTIONS=\" --poll-s 300 --rate-limit 2000 --wait-ms 300 "
 		 "--redirect-hosts cdn.example,cdn2.example:8443 --ca %s/conf/ca.pem\"\n",
 		 out);
 	has("fetch.env", options);
@@ -283,19 +284,33 @@ static void the_authority_outlives_its_stick(void **state)
 
 /* Every setting once, and %s in the place of one value. */
 static const char *const settings[][2] = {
-	{ "terminal", "name" },      { "terminal", "language" },
-	{ "terminal", "time_zone" }, { "terminal", "board" },
-	{ "release", "url" },        { "release", "trust" },
-	{ "release", "ca" },         { "release", "poll_s" },
-	{ "release", "download" },   { "release", "rate_limit_kib" },
-	{ "panel", "mode" },         { "panel", "rotation" },
-	{ "panel", "hours" },        { "panel", "wake_min" },
-	{ "panel", "shift" },        { "network", "address" },
-	{ "network", "gateway" },    { "network", "dns" },
-	{ "network", "ntp" },        { "wifi", "ssid" },
-	{ "wifi", "passphrase" },    { "wifi", "country" },
-	{ "health", "listen" },      { "health", "mdns" },
-	{ "visit", "idle_s" },       { "release", "redirect_hosts" },
+	{ "terminal", "name" },
+	{ "terminal", "language" },
+	{ "terminal", "time_zone" },
+	{ "terminal", "board" },
+	{ "release", "url" },
+	{ "release", "trust" },
+	{ "release", "ca" },
+	{ "release", "poll_s" },
+	{ "release", "download" },
+	{ "release", "rate_limit_kib" },
+	{ "panel", "mode" },
+	{ "panel", "rotation" },
+	{ "panel", "hours" },
+	{ "panel", "wake_min" },
+	{ "panel", "shift" },
+	{ "network", "address" },
+	{ "network", "gateway" },
+	{ "network", "dns" },
+	{ "network", "wait_ms" },
+	{ "network", "ntp" },
+	{ "wifi", "ssid" },
+	{ "wifi", "passphrase" },
+	{ "wifi", "country" },
+	{ "health", "listen" },
+	{ "health", "mdns" },
+	{ "visit", "idle_s" },
+	{ "release", "redirect_hosts" },
 	{ "usb", "allow" },
 };
 

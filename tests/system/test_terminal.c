@@ -52,7 +52,7 @@ static void takes_every_value(void **state)
 	      "[panel]\nmode = 3840x2160@59.94\nrotation = 270\nhours = Mo-Fr 09:00-18:00\n"
 	      "wake_min = 0\nshift = no\n"
 	      "[network]\naddress = 192.168.1.20/24\ngateway = 192.168.1.1\n"
-	      "dns = 192.168.1.1, 2620:fe::fe\nntp = pool.ntp.org 192.168.1.1\n"
+	      "dns = 192.168.1.1, 2620:fe::fe\nntp = pool.ntp.org 192.168.1.1\nwait_ms = 2000\n"
 	      "[wifi]\nssid = Musée d'Angkor\npassphrase = stone and water\ncountry = kh\n"
 	      "[health]\nlisten = [::]:9200\nmdns = yes\n"
 	      "[visit]\nidle_s = 90\n");
@@ -63,6 +63,7 @@ static void takes_every_value(void **state)
 	CHECK(strcmp(terminal.board, "weak-arm") == 0);
 	CHECK(strcmp(terminal.release_url, "https://museum.example/temple/") == 0);
 	CHECK(strcmp(terminal.trust, "1.json") == 0 && strcmp(terminal.ca, "ca.pem") == 0);
+	CHECK(terminal.wait_ms == 2000);
 	CHECK(terminal.poll_s == 600 && terminal.rate_limit_kib == 500);
 	CHECK(terminal.download.from_min == 22 * 60);
 	CHECK(terminal.download.until_min == 6 * 60);
@@ -139,6 +140,7 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "release", "download = 22:00-22:00", "such as 22:00-06:00" },
 		{ "release", "download = 22:00-26:00", "such as 22:00-06:00" },
 		{ "release", "rate_limit_kib = 0", "from 1 to 1048576" },
+		{ "network", "wait_ms = 0", "from 50 to 60000" },
 		{ "network", "address = 192.168.1.20", "such as 192.168.1.20/24" },
 		{ "network", "address = 192.168.1.0/24", "such as 192.168.1.20/24" },
 		{ "network", "address = 192.168.1.255/24", "such as 192.168.1.20/24" },
