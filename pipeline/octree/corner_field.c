@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/spill.h"
+#include "geometry/vec.h"
 
 /* All corners of a cube that the surface crosses lie within sqrt(3) of it. */
 static const double reach_out = 2.5;
@@ -67,6 +68,11 @@ static int find_or_add(struct corner_field *field, const int32_t block[3], uint3
 	*out = field->block_count++;
 	return 0;
 }
+
+/* Distance of places on a face, in cells. */
+static const double face_step = 0.7;
+
+enum { FACE_CELLS_MAX = 1 << 16 };
 
 /* A point in cells from corner 0 0 0. */
 struct splat {
@@ -170,22 +176,101 @@ static int add_point(struct corner_field *field, const struct splat *splat)
 	return 0;
 }
 
+static int add_scan_point(struct corner_field *field, const struct range_point *point)
+{
+	const double spacing = (double)point->spacing / field->cell;
+	struct splat splat = { .point = point };
+
+	for (int k = 0; k < 3; k++)
+		splat.at[k] = (point->at[k] - field->origin[k]) / field->cell;
+	splat.reach_aside =
+		fmin(reach_aside_most, fmax(reach_aside_least, reach_aside_spacings * spacing));
+	splat.reach = fmax(reach_out, splat.reach_aside);
+	return add_point(field, &splat);
+}
+
+/* ---- faces of meshes */
+
+/* Sets the normal of a face. Returns the length of its longest edge in cells, or 0 if it has no
+ * area. */
+static double measure_face(const struct corner_field *field,
+			   const struct range_point *const corners[3], float normal[3])
+{
+	double edges[3][3], squared = 0, cross[3], largest = 0;
+
+	for (int i = 0; i < 3; i++) {
+		double sum = 0;
+
+		for (int k = 0; k < 3; k++) {
+			edges[i][k] =
+				(corners[(i + 1) % 3]->at[k] - corners[i]->at[k]) / field->cell;
+			sum += edges[i][k] * edges[i][k];
+		}
+		squared = fmax(squared, sum);
+	}
+	for (int k = 0; k < 3; k++) {
+		const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+		cross[k] = edges[0][a] * edges[1][b] - edges[0][b] * edges[1][a];
+		largest = fmax(largest, fabs(cross[k]));
+	}
+	for (int k = 0; k < 3; k++)
+		normal[k] = largest > 0 ? (float)(cross[k] / largest) : 0;
+	return vec_normalise(normal) > 0 ? sqrt(squared) : 0;
+}
+
+/* Adds the place of a face with these shares of its corners. */
+static int add_face_point(struct corner_field *field, const struct range_point *const corners[3],
+			  const float normal[3], const double shares[3])
+{
+	struct range_point point = { .weight = 1, .spacing = 0 };
+
+	vec_copy(point.normal, normal);
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 3; k++)
+			point.at[k] += shares[i] * corners[i]->at[k];
+	for (int k = 0; k < 3; k++)
+		point.colour[k] = (uint8_t)(shares[0] * corners[0]->colour[k] +
+					    shares[1] * corners[1]->colour[k] +
+					    shares[2] * corners[2]->colour[k] + 0.5);
+	return add_scan_point(field, &point);
+}
+
+/* Adds places on a face, less than a cell apart: the middle of a small one. */
+static int add_face(struct corner_field *field, const struct range_scan *scan, uint32_t face)
+{
+	const struct range_point *corners[3];
+	float normal[3];
+	double longest;
+	uint32_t n;
+	int rc = 0;
+
+	for (int i = 0; i < 3; i++)
+		corners[i] = &scan->points[scan->triangles[face][i]];
+	longest = fmin(measure_face(field, corners, normal), FACE_CELLS_MAX);
+	n = (uint32_t)ceil(longest / face_step);
+	if (n == 1)
+		return add_face_point(field, corners, normal,
+				      (double[3]){ 1 / 3., 1 / 3., 1 / 3. });
+	for (uint32_t a = 0; a <= n && n > 0 && rc == 0; a++)
+		for (uint32_t b = 0; a + b <= n && rc == 0; b++)
+			rc = add_face_point(field, corners, normal,
+					    (double[3]){ (double)(n - a - b) / n, (double)a / n,
+							 (double)b / n });
+	return rc;
+}
+
 int corner_field_add(struct corner_field *field, const struct range_scan *scan)
 {
 	int rc = 0;
 
-	for (uint32_t i = 0; i < scan->count && rc == 0; i++) {
-		struct splat splat = { .point = &scan->points[i] };
-
-		for (int k = 0; k < 3; k++)
-			splat.at[k] = (splat.point->at[k] - field->origin[k]) / field->cell;
-		splat.reach_aside = fmin(
-			reach_aside_most,
-			fmax(reach_aside_least,
-			     reach_aside_spacings * (double)splat.point->spacing / field->cell));
-		splat.reach = fmax(reach_out, splat.reach_aside);
-		rc = add_point(field, &splat);
+	for (uint32_t i = 0; i < scan->count && !scan->triangles && rc == 0; i++) {
+		rc = add_scan_point(field, &scan->points[i]);
 		spill_pass(i);
+	}
+	for (uint32_t i = 0; i < scan->triangle_count && rc == 0; i++) {
+		rc = add_face(field, scan, i);
+		spill_pass(i * 64ull);
 	}
 	return rc;
 }

@@ -39,8 +39,9 @@ static inline map_key field_key(const int32_t block[3])
 	       (map_key)(uint32_t)block[0];
 }
 
-/* A zeroed field with origin, cell and has_colour set is empty. Adds all points of a scan. -ENOMEM,
- * -ENOSPC; -EFBIG: more than FIELD_BLOCKS_MAX blocks. */
+/* A zeroed field with origin, cell and has_colour set is empty. Adds all points of a scan; of a
+ * mesh places on its faces instead, so that there are enough of them. -ENOMEM, -ENOSPC; -EFBIG:
+ * more than FIELD_BLOCKS_MAX blocks. */
 must_check int corner_field_add(struct corner_field *field, const struct range_scan *scan);
 void corner_field_finish(struct corner_field *field); /* NULL and zeroed are fine */
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "geometry/vec.h"
 #include "pipeline/import/ply.h"
 #include "pipeline/octree/range_grid.h"
@@ -16,7 +17,13 @@ struct collector {
 	struct range_point *points; /* owned; in the axes of the file */
 	struct range_grid grid;
 	double (*face_normals)[3]; /* of each vertex, summed; owned; NULL: no faces */
+	uint32_t (*triangles)[3];  /* owned; NULL: no faces */
+	uint32_t triangle_count, triangle_room;
 };
+
+/* Beyond these, sums lose their meaning. */
+static const double place_most = 1e12;
+static const float weight_most = 1e6f;
 
 /* ---- reading */
 
@@ -30,10 +37,9 @@ static int take_vertex(void *data, uint32_t index, const struct ply_vertex *vert
 	memcpy(point->normal, vertex->normal, sizeof(point->normal));
 	memcpy(point->colour, vertex->colour, sizeof(point->colour));
 	for (int k = 0; k < 3; k++)
-		if (!isfinite(point->at[k]))
+		if (!(fabs(point->at[k]) <= place_most))
 			point->weight = 0;
-	if (!(point->weight > 0) || !isfinite(point->weight))
-		point->weight = 0;
+	point->weight = point->weight > 0 ? fminf(point->weight, weight_most) : 0;
 	return 0;
 }
 
@@ -50,10 +56,17 @@ static int take_triangle(void *data, uint64_t index, const struct ply_triangle *
 	struct collector *collector = data;
 	const double *p[3];
 	double n[3];
+	int rc;
 
 	(void)index;
 	if (!collector->face_normals)
 		return 0;
+	rc = ARRAY_RESERVE(collector->triangles, collector->triangle_room,
+			   collector->triangle_count + 1ull, UINT32_MAX - 1);
+	if (rc < 0)
+		return rc;
+	memcpy(collector->triangles[collector->triangle_count++], triangle->corner,
+	       sizeof(collector->triangles[0]));
 	for (int k = 0; k < 3; k++)
 		p[k] = collector->points[triangle->corner[k]].at;
 	for (int k = 0; k < 3; k++) {
@@ -144,7 +157,8 @@ static void set_sight(struct collector *collector, enum range_sight sight)
 		for (int k = 0; k < 3; k++)
 			point->towards[k] =
 				sight == RANGE_SIGHT_ORIGIN ? -(float)point->at[k] : axis[k];
-		vec_normalise(point->towards);
+		if (!isfinite(vec_normalise(point->towards)))
+			memset(point->towards, 0, sizeof(point->towards));
 	}
 }
 
@@ -183,7 +197,8 @@ static int orient(struct collector *collector, enum range_sight sight, double *s
 			length = fmax(length, fabs(collector->face_normals[i][k]));
 		for (int k = 0; k < 3 && length > 0; k++)
 			point->normal[k] = (float)(collector->face_normals[i][k] / length);
-		if (!(vec_normalise(point->normal) > 0) || !isfinite(point->normal[0]))
+		length = (double)vec_normalise(point->normal);
+		if (!(length > 0) || !isfinite(length))
 			point->weight = 0;
 	}
 	return 0;
@@ -203,12 +218,34 @@ static void turn(float direction[3], const struct transform *transform)
 	vec_normalise(direction);
 }
 
+/* Keeps the triangles whose corners were kept. numbers: of each vertex, or RANGE_NO_POINT. */
+static void keep_triangles(struct range_scan *scan, struct collector *collector,
+			   const uint32_t *numbers)
+{
+	for (uint32_t t = 0; t < collector->triangle_count; t++) {
+		const uint32_t *corners = collector->triangles[t];
+		const uint32_t kept[3] = { numbers[corners[0]], numbers[corners[1]],
+					   numbers[corners[2]] };
+
+		if (kept[0] == RANGE_NO_POINT || kept[1] == RANGE_NO_POINT ||
+		    kept[2] == RANGE_NO_POINT)
+			continue;
+		memcpy(collector->triangles[scan->triangle_count++], kept, sizeof(kept));
+	}
+	scan->triangles = collector->triangles;
+	collector->triangles = NULL;
+}
+
 /* Drops the points without weight and moves the others to the common axes. */
-static void keep_good(struct range_scan *scan, struct collector *collector,
-		      const struct transform *transform)
+static int keep_good(struct range_scan *scan, struct collector *collector,
+		     const struct transform *transform)
 {
 	const uint32_t all = (uint32_t)collector->summary->vertex_count;
+	uint32_t *numbers = malloc((all + (size_t)1) * sizeof(*numbers));
 	double scale = 0;
+
+	if (!numbers)
+		return -ENOMEM;
 
 	for (int k = 0; k < 3 && transform; k++)
 		scale += transform->rows[k][0] * transform->rows[k][0];
@@ -217,6 +254,7 @@ static void keep_good(struct range_scan *scan, struct collector *collector,
 	for (uint32_t i = 0; i < all; i++) {
 		struct range_point *point = &collector->points[i];
 
+		numbers[i] = RANGE_NO_POINT;
 		if (!(point->weight > 0))
 			continue;
 		if (transform) {
@@ -225,11 +263,16 @@ static void keep_good(struct range_scan *scan, struct collector *collector,
 			turn(point->towards, transform);
 			point->spacing *= (float)scale;
 		}
+		numbers[i] = scan->count;
 		collector->points[scan->count++] = *point;
 	}
 	scan->dropped = all - scan->count;
 	scan->points = collector->points;
 	collector->points = NULL;
+	if (collector->triangles)
+		keep_triangles(scan, collector, numbers);
+	free(numbers);
+	return 0;
 }
 
 int range_scan_read(struct range_scan *out, const char *path, const struct transform *transform,
@@ -258,8 +301,8 @@ int range_scan_read(struct range_scan *out, const char *path, const struct trans
 	if (rc == 0) {
 		out->has_colour = collector.summary->has_colour;
 		out->grid_columns = collector.grid.columns;
-		keep_good(out, &collector, transform);
-		if (out->count == 0)
+		rc = keep_good(out, &collector, transform);
+		if (rc == 0 && out->count == 0)
 			rc = diagnostics_add(diagnostics, -EBADMSG, path, 0,
 					     "none of its points has a place and a normal; export "
 					     "it again");
@@ -270,6 +313,7 @@ int range_scan_read(struct range_scan *out, const char *path, const struct trans
 	free(collector.points);
 	free(collector.grid.cells);
 	free(collector.face_normals);
+	free(collector.triangles);
 	if (rc < 0)
 		range_scan_finish(out);
 	return rc;
@@ -280,6 +324,7 @@ void range_scan_finish(struct range_scan *scan)
 	if (!scan)
 		return;
 	free(scan->points);
+	free(scan->triangles);
 	*scan = (struct range_scan){ 0 };
 }
 

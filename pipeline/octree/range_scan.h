@@ -38,6 +38,9 @@ struct range_scan {
 	double spacing;        /* median distance of neighbouring points; 0: unknown */
 	uint32_t dropped;      /* points that were left out: not finite, or without a neighbour */
 	uint32_t grid_columns; /* 0: no range image */
+	/* Of a mesh: its faces between these points; owned; NULL: no mesh. */
+	uint32_t triangle_count;
+	uint32_t (*triangles)[3];
 };
 
 /* Reads a scan. transform places it; NULL: it stays. *out is owned by the caller; it is zeroed on

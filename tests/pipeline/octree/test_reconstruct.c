@@ -239,6 +239,36 @@ static void reads_clouds_with_normals_and_meshes(void **state)
 			&diagnostics) == 0);
 }
 
+/* Its corners alone would be 40 cubes apart. Edges are rounded by half a cube. */
+static void faces_of_a_mesh_give_points(void **state)
+{
+	static const char text[] =
+		HEAD "element vertex 8\n" XYZ "element face 6\n"
+		     "property list uchar int vertex_indices\nend_header\n"
+		     "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
+		     "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+	const struct reconstruct_options options = { .cell = 0.025, .is_closed = true };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	char path[256];
+	(void)state;
+
+	scan_write(path, "box.ply", text, strlen(text));
+	scans[0] = (struct reconstruct_scan){ path, NULL };
+	mesh = run(&options, 1, &report);
+	CHECK(report.parts == 1 && report.border_edges == 0 && report.crowded_edges == 0);
+	CHECK(fabs(volume6(&mesh) / 6 - 1) < 0.01);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++) {
+		float outside = 0;
+
+		for (int k = 0; k < 3; k++)
+			outside = fmaxf(outside, fabsf(mesh.positions[i][k] - 0.5f));
+		CHECK(outside > 0.4f && outside < 0.5f + 0.012f);
+	}
+	mesh_finish(&mesh);
+	scan_remove(path);
+}
+
 static void registrations_place_the_scans(void **state)
 {
 	struct diagnostics diagnostics = { 0 };
@@ -267,6 +297,7 @@ int main(void)
 		cmocka_unit_test(depth_sets_the_number_of_cubes),
 		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
+		cmocka_unit_test(faces_of_a_mesh_give_points),
 		cmocka_unit_test(registrations_place_the_scans),
 	};
 
