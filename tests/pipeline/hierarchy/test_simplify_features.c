@@ -172,7 +172,72 @@ static void nothing_folds_over(void **state)
 	subject_finish(&subject);
 }
 
-/* Without the link condition the ring closes. */
+static bool but_one(uint32_t n, uint32_t x, uint32_t y)
+{
+	(void)n;
+	return x != 10 || y != 12;
+}
+
+/* Vertices less edges plus triangles of an open surface: 1 for a disc, 0 with a hole. */
+static int open_euler(const struct simplify_surface *surface)
+{
+	uint32_t corners = 3 * surface->triangle_count;
+	uint64_t *edges = malloc(corners * sizeof(*edges));
+	int distinct = 0;
+
+	for (uint32_t c = 0; c < corners; c++) {
+		uint64_t a = surface->triangles[c / 3][c % 3];
+		uint64_t b = surface->triangles[c / 3][(c % 3 + 1) % 3];
+
+		edges[c] = a < b ? a << 32 | b : b << 32 | a;
+	}
+	qsort(edges, corners, sizeof(*edges), subject_compare_keys);
+	for (uint32_t c = 0; c < corners; c++)
+		distinct += c == 0 || edges[c] != edges[c - 1];
+	free(edges);
+	return (int)used_vertices(surface) - distinct + (int)surface->triangle_count;
+}
+
+/* A hole of three edges: each two of its vertices have the third as a neighbour in common, which is
+ * no corner of a triangle at their edge. Without the link condition the hole closes. */
+static void a_small_hole_stays_a_hole(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+
+	(void)state;
+	subject_init(&subject, sheet(32, but_one));
+	CHECK(open_euler(&subject.surface) == 0);
+	CHECK(simplify_features(&subject.surface, 6, INFINITY, -1.0, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 6);
+	CHECK(open_euler(&subject.surface) == 0);
+	subject_finish(&subject);
+}
+
+/* Of two ends that may leave, the one in the flatter place does: the top of a low hill stays. */
+static void the_flatter_end_leaves(void **state)
+{
+	struct subject subject;
+	struct simplify_result result;
+	struct mesh hill = sheet(32, everywhere);
+	int32_t highest = 0;
+
+	(void)state;
+	hill.positions[17 * 33 + 15][2] = 0.2f / 32;
+	subject_init(&subject, hill);
+	CHECK(simplify_features(&subject.surface, 4, INFINITY, -1.0, &result) == 0);
+	CHECK(subject.surface.triangle_count <= 4);
+	for (uint32_t c = 0; c < 3 * subject.surface.triangle_count; c++) {
+		uint32_t v = subject.surface.triangles[c / 3][c % 3];
+
+		if (subject.surface.vertices[v].position[2] > highest)
+			highest = subject.surface.vertices[v].position[2];
+	}
+	CHECK(highest > 100);
+	subject_finish(&subject);
+}
+
+/* The ring, whose sides are far apart. */
 static void a_ring_stays_a_ring(void **state)
 {
 	struct subject subject;
@@ -365,6 +430,8 @@ int main(void)
 		cmocka_unit_test(a_cube_keeps_its_edges),
 		cmocka_unit_test(the_edges_of_bulging_sides_stay),
 		cmocka_unit_test(nothing_folds_over),
+		cmocka_unit_test(a_small_hole_stays_a_hole),
+		cmocka_unit_test(the_flatter_end_leaves),
 		cmocka_unit_test(a_ring_stays_a_ring),
 		cmocka_unit_test(a_locked_border_stays_edge_by_edge),
 		cmocka_unit_test(a_step_of_colour_stays),
