@@ -76,7 +76,7 @@ static void print_budget(const struct publish_budget_report *budget, uint64_t bu
 	for (uint32_t i = 0; i < budget->choice_count; i++)
 		printf("%s %" PRIu32 " of %" PRIu8, i ? "," : "", budget->counts[i],
 		       budget->qualities[i]);
-	puts("");
+	printf("; mean SSIM %.4f\n", budget->similarity);
 }
 
 /* Before hours of work, refuses a budget that cannot be met. What a release takes at least is a

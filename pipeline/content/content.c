@@ -189,8 +189,10 @@ static bool set_quality_rule(const struct setting *setting, void *target, const 
 	struct content *content = target;
 
 	(void)setting;
-	content->quality_by_features = strcasecmp(value, "features") == 0;
-	return content->quality_by_features || strcasecmp(value, "uniform") == 0;
+	content->quality_rule = strcasecmp(value, "features") == 0  ? CONTENT_QUALITY_FEATURES
+				: strcasecmp(value, "uniform") == 0 ? CONTENT_QUALITY_UNIFORM
+								    : CONTENT_QUALITY_GAIN;
+	return content->quality_rule != CONTENT_QUALITY_GAIN || strcasecmp(value, "gain") == 0;
 }
 
 static bool set_kind(const struct setting *setting, void *target, const char *value)
@@ -285,7 +287,7 @@ static const struct setting settings[] = {
 		4096),
 	NUMBERS("grid", "quality", NULL, settings_whole, quality, 1, 100),
 	SETTING("grid", "effort", "thorough or quick", set_effort),
-	SETTING("samples", "quality", "uniform or features", set_quality_rule),
+	SETTING("samples", "quality", "gain, uniform or features", set_quality_rule),
 	SETTING("hierarchy", "kind", "groups or tree", set_kind),
 	SETTING("hierarchy", "simplify", "quadric or features", set_simplify),
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),

@@ -31,6 +31,13 @@ enum content_lit {
 	CONTENT_LIT_YES,
 };
 
+/* Which tiles of a release with a budget get a better quality. */
+enum content_quality_rule {
+	CONTENT_QUALITY_GAIN,     /* those where a byte gains most similarity */
+	CONTENT_QUALITY_UNIFORM,  /* all alike */
+	CONTENT_QUALITY_FEATURES, /* those with more feature points */
+};
+
 struct content {
 	char folder[CONTENT_PATH_BYTES]; /* as given, without a trailing slash */
 	char name[128];                  /* UTF-8; by default the name of the folder */
@@ -44,13 +51,13 @@ struct content {
 	uint8_t background[3];
 	bool has_start;
 	float start_eye_m[3], start_target_m[3]; /* valid if has_start */
-	unsigned tools;           /* tools that visitors have; bits of enum info_tool */
-	uint32_t grid_points;     /* 4..32, along the longest side of the bounding box */
-	uint32_t face_px;         /* size of the finest sampling face: 128, 256 ... 4096 */
-	uint32_t quality;         /* 1..100 */
-	enum tile_effort effort;  /* of tiles */
-	uint64_t budget_bytes;    /* of the whole release; 0: none. Not in temple.ini */
-	bool quality_by_features; /* with a budget: more for tiles with more feature points */
+	unsigned tools;          /* tools that visitors have; bits of enum info_tool */
+	uint32_t grid_points;    /* 4..32, along the longest side of the bounding box */
+	uint32_t face_px;        /* size of the finest sampling face: 128, 256 ... 4096 */
+	uint32_t quality;        /* 1..100 */
+	enum tile_effort effort; /* of tiles */
+	uint64_t budget_bytes;   /* of the whole release; 0: none. Not in temple.ini */
+	enum content_quality_rule quality_rule;
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	bool simplify_features;   /* levels keep feature edges; else by quadrics */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */

@@ -11,7 +11,6 @@
 #include "base/log.h"
 #include "base/map.h"
 #include "pipeline/release/publish_samples.h"
-#include "pipeline/samples/tile_choice.h"
 
 /* Of the root page besides its children, and of what a locator has for each page, rounded up. */
 enum { ROOT_BYTES = 512 };
@@ -73,9 +72,10 @@ static int count_bytes(uint64_t *out, struct object_store *objects,
 
 /* ---- the choice */
 
-static int choose(struct tile_choice *choice, struct samples_store *store, uint64_t bytes)
+static int choose(struct tile_choice *choice, struct samples_store *store,
+		  enum tile_choice_rule rule, uint64_t bytes)
 {
-	int rc = tile_choice_make(choice, store, bytes);
+	int rc = tile_choice_make(choice, store, rule, bytes);
 
 	return rc < 0 ? rc : samples_store_choose(store, choice->choices, choice->tile_count);
 }
@@ -83,7 +83,7 @@ static int choose(struct tile_choice *choice, struct samples_store *store, uint6
 int publish_budget_begin(struct samples_store *store)
 {
 	struct tile_choice choice;
-	int rc = choose(&choice, store, 0);
+	int rc = choose(&choice, store, TILE_CHOICE_GAIN, 0);
 
 	tile_choice_finish(&choice);
 	return rc;
@@ -107,7 +107,7 @@ static int refuse(uint64_t budget_bytes, uint64_t least_bytes)
 
 int publish_budget_meet(struct publish_budget_report *report, struct object_store *objects,
 			struct samples_store *store, struct page_child *children,
-			uint32_t child_count, uint64_t budget_bytes)
+			uint32_t child_count, enum tile_choice_rule rule, uint64_t budget_bytes)
 {
 	const struct sample_grid *grid = samples_store_grid(store);
 	struct tile_choice least = { 0 }, choice = { 0 };
@@ -115,12 +115,12 @@ int publish_budget_meet(struct publish_budget_report *report, struct object_stor
 	int rc = count_bytes(&report->least_bytes, objects, children, child_count);
 
 	if (rc == 0)
-		rc = tile_choice_make(&least, store, 0);
+		rc = tile_choice_make(&least, store, rule, 0);
 	if (rc == 0 && report->least_bytes > budget_bytes)
 		rc = refuse(budget_bytes, report->least_bytes);
 	other_bytes = report->least_bytes - least.bytes;
 	if (rc == 0)
-		rc = choose(&choice, store, budget_bytes - other_bytes);
+		rc = choose(&choice, store, rule, budget_bytes - other_bytes);
 	if (rc == 0)
 		rc = samples_store_keep_choice(store);
 	if (rc == 0)
@@ -129,6 +129,7 @@ int publish_budget_meet(struct publish_budget_report *report, struct object_stor
 	report->tile_count = choice.tile_count;
 	report->choice_count = grid->choice_count;
 	memcpy(report->qualities, grid->qualities, sizeof(report->qualities));
+	report->similarity = choice.similarity;
 	memcpy(report->counts, choice.counts, sizeof(report->counts));
 	tile_choice_finish(&least);
 	tile_choice_finish(&choice);

@@ -196,6 +196,9 @@ static int publish_objects(struct publish_content_report *report,
 	child_count += root.has_stream;
 	if (rc >= 0 && content->budget_bytes > 0)
 		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
+					 content->quality_rule == CONTENT_QUALITY_GAIN
+						 ? TILE_CHOICE_GAIN
+						 : TILE_CHOICE_QUALITY,
 					 content->budget_bytes);
 	samples_store_close(store);
 	if (rc >= 0)

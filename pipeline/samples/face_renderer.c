@@ -14,6 +14,7 @@
 #include "pipeline/samples/raster.h"
 #include "pipeline/samples/resolve.h"
 #include "pipeline/samples/shading.h"
+#include "pipeline/samples/tile_loss.h"
 
 enum { OBJECTS_BYTES_MAX = 128 << 20 };
 
@@ -31,6 +32,8 @@ struct face_renderer {
 	struct pyramid pyramid;
 	int frame_px, samples; /* of the frame; per pixel and axis */
 	uint8_t tile[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
+	uint8_t decoded[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
+	uint8_t covered[TILE_WINDOWS];                        /* windows of the tile */
 	uint32_t features[FACE_TILES_MAX][SAMPLE_SCALES_MAX]; /* of all places of a face */
 };
 
@@ -162,22 +165,64 @@ static uint16_t find_coverage(const struct face_renderer *renderer)
 	return coverage;
 }
 
+/* Finds which windows of a tile show something; x, y: of its corner in the level's picture. */
+static uint16_t find_windows(struct face_renderer *renderer, uint32_t finer, uint32_t x, uint32_t y)
+{
+	const struct pyramid *pyramid = &renderer->pyramid;
+	uint16_t count = 0;
+
+	for (uint32_t w = 0; w < TILE_WINDOWS; w++) {
+		uint32_t column = x + w % TILE_WINDOW_SIDE * TILE_WINDOW_PX + TILE_WINDOW_PX / 2;
+		uint32_t row = y + w / TILE_WINDOW_SIDE * TILE_WINDOW_PX + TILE_WINDOW_PX / 2;
+		size_t at = (size_t)row * pyramid->side_px[finer] + column;
+
+		renderer->covered[w] = pyramid->levels[finer][at][3] > 0;
+		count += renderer->covered[w];
+	}
+	return count;
+}
+
+static int encode_at(struct face_renderer *renderer, struct shot *shot, int quality)
+{
+	return tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX, quality,
+			   renderer->options.effort);
+}
+
+/* Encodes a tile at all qualities, and measures what each loses. */
+static int encode_choices(struct face_renderer *renderer, struct shot *shot, uint32_t finer,
+			  uint32_t x, uint32_t y)
+{
+	const uint32_t choices = renderer->options.choice_count, tile = shot->tile_count;
+	int rc = 0;
+
+	shot->windows[tile] = find_windows(renderer, finer, x, y);
+	for (uint32_t choice = 0; rc == 0 && choice < choices; choice++) {
+		size_t start = shot->objects.size;
+		struct bytes object;
+
+		rc = encode_at(renderer, shot, renderer->options.qualities[choice]);
+		if (rc < 0)
+			return rc;
+		object = (struct bytes){ shot->objects.data + start, shot->objects.size - start };
+		shot->end_of[tile * choices + choice] = (uint32_t)shot->objects.size;
+		rc = tile_decode(renderer->decoded, SAMPLE_IMAGE_PX, object);
+		shot->losses[tile * SAMPLE_CHOICES_MAX + choice] =
+			tile_loss(renderer->tile, renderer->decoded, renderer->covered);
+	}
+	return rc;
+}
+
 static int encode_tile(struct face_renderer *renderer, struct shot *shot, uint32_t level,
 		       uint32_t x, uint32_t y)
 {
-	const struct face_renderer_options *options = &renderer->options;
-	const uint32_t choices = options->choice_count > 1 ? options->choice_count : 1;
-	int rc = 0;
+	const uint32_t finer = renderer->options.level_count - 1 - level;
+	int rc;
 
-	pyramid_sharpen(&renderer->pyramid, options->level_count - 1 - level, x, y, SAMPLE_IMAGE_PX,
-			renderer->tile);
-	for (uint32_t choice = 0; rc == 0 && choice < choices; choice++) {
-		int quality = choices > 1 ? options->qualities[choice] : options->quality;
-
-		rc = tile_encode(&shot->objects, renderer->tile, SAMPLE_IMAGE_PX, quality,
-				 options->effort);
-		shot->end_of[shot->tile_count * choices + choice] = (uint32_t)shot->objects.size;
-	}
+	pyramid_sharpen(&renderer->pyramid, finer, x, y, SAMPLE_IMAGE_PX, renderer->tile);
+	if (renderer->options.choice_count > 1)
+		return encode_choices(renderer, shot, finer, x, y);
+	rc = encode_at(renderer, shot, renderer->options.quality);
+	shot->end_of[shot->tile_count] = (uint32_t)shot->objects.size;
 	return rc;
 }
 

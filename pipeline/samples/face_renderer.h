@@ -37,6 +37,9 @@ struct shot {
 	/* Where each tile ends in objects at each quality, tile by tile. */
 	uint32_t end_of[FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
 	uint32_t features[FACE_TILES_MAX][SAMPLE_SCALES_MAX]; /* of each tile */
+	/* With more than one quality, as in sample_face. */
+	uint16_t windows[FACE_TILES_MAX];
+	uint32_t losses[FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
 	struct buffer objects; /* owned; the encoded tiles one after the other */
 };
 

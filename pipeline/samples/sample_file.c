@@ -82,8 +82,13 @@ static void put_tile(struct buffer *file, const struct sample_grid *grid,
 	buffer_put_u16(file, face->tiles[tile]);
 	for (uint32_t scale = 0; scale < scales_of(grid); scale++)
 		buffer_put_u32(file, face->features[tile][scale]);
+	if (choices > 1)
+		buffer_put_u16(file, face->windows[tile]);
 	for (uint32_t choice = 0; choice < choices; choice++) {
 		const struct bytes object = face->objects[tile * choices + choice];
+
+		if (choices > 1)
+			buffer_put_u32(file, face->losses[tile * SAMPLE_CHOICES_MAX + choice]);
 
 		buffer_put_u32(file, (uint32_t)object.size);
 		buffer_put(file, object.data, object.size);
@@ -113,10 +118,15 @@ static void summarize_tile(struct buffer *out, struct reader *contents,
 {
 	for (uint32_t scale = 0; scale < scales_of(grid); scale++)
 		buffer_put_u32(out, reader_u32(contents));
+	if (choices_of(grid) > 1)
+		buffer_put_u16(out, reader_u16(contents));
 	for (uint32_t choice = 0; choice < choices_of(grid); choice++) {
+		uint32_t loss = choices_of(grid) > 1 ? reader_u32(contents) : 0;
 		uint32_t size = reader_u32(contents);
 		struct hash hash = hash_of(reader_bytes(contents, size));
 
+		if (choices_of(grid) > 1)
+			buffer_put_u32(out, loss);
 		buffer_put_u32(out, size);
 		buffer_put(out, hash.bytes, HASH_BYTES);
 	}
@@ -190,12 +200,19 @@ static void read_tile(struct sample_summary *summary, uint32_t i, uint32_t chose
 	summary->at += 2 + 4 * summary->scale_count;
 	for (uint32_t scale = 0; scale < summary->scale_count; scale++)
 		summary->features[i][scale] = reader_u32(reader);
+	if (summary->choice_count > 1) {
+		summary->windows[i] = reader_u16(reader);
+		summary->at += 2;
+	}
 	for (uint32_t choice = 0; choice < summary->choice_count; choice++) {
+		uint32_t loss = summary->choice_count > 1 ? reader_u32(reader) : 0;
 		uint32_t size = reader_u32(reader);
 		struct bytes hash = reader_bytes(reader, HASH_BYTES);
 
 		if (reader->failed)
 			return;
+		summary->at += summary->choice_count > 1 ? 4 : 0;
+		summary->losses[i * SAMPLE_CHOICES_MAX + choice] = loss;
 		summary->choice_sizes[i * SAMPLE_CHOICES_MAX + choice] = size;
 		if (choice == chosen) {
 			summary->sizes[i] = size;
@@ -229,6 +246,8 @@ bool sample_summary_next(struct sample_summary *summary, struct sample_face *out
 	out->hashes = summary->hashes;
 	out->offsets = summary->offsets;
 	out->choice_sizes = summary->choice_sizes;
+	out->windows = summary->windows;
+	out->losses = summary->losses;
 	out->features = summary->scale_count > 0
 				? (const uint32_t(*)[SAMPLE_SCALES_MAX])summary->features
 				: NULL;

@@ -39,6 +39,8 @@ struct sample_summary {
 	struct hash hashes[FACE_TILES_MAX];
 	uint64_t offsets[FACE_TILES_MAX];
 	uint32_t choice_sizes[FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
+	uint32_t losses[FACE_TILES_MAX * SAMPLE_CHOICES_MAX];
+	uint16_t windows[FACE_TILES_MAX];
 	uint32_t features[FACE_TILES_MAX][SAMPLE_SCALES_MAX];
 };
 

@@ -51,6 +51,10 @@ struct sample_face {
 	const struct bytes *objects;
 	/* Feature points of each tile at each scale of the grid; borrowed; NULL: no scales. */
 	const uint32_t (*features)[SAMPLE_SCALES_MAX];
+	/* With a choice: how many windows of each tile show something, and what is lost of them
+	 * (tile_loss.h), [i * SAMPLE_CHOICES_MAX + c]; borrowed. */
+	const uint16_t *windows;
+	const uint32_t *losses;
 	/* Set by samples_store_next instead: hashes and sizes of the encoded tiles, the file that
 	 * holds them, and their offsets in it; all borrowed. */
 	const struct hash *hashes;

@@ -22,7 +22,7 @@
 #include "pipeline/samples/model_master.h"
 #include "render/display/headless.h"
 
-enum { SAMPLER_VERSION = 10, JOBS_MAX = 64 };
+enum { SAMPLER_VERSION = 10, CHOICES_VERSION = 2, JOBS_MAX = 64 };
 
 /* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;
@@ -123,6 +123,7 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 	}
 	buffer_put_u32(&text, grid->level_count);
 	if (grid->choice_count > 1) {
+		buffer_put_u8(&text, CHOICES_VERSION);
 		buffer_put(&text, grid->qualities, grid->choice_count);
 		buffer_put_u8(&text, (uint8_t)grid->scale_count);
 	}
@@ -209,7 +210,9 @@ static void describe_face(struct taken *taken, uint32_t n, int face, const struc
 		.tile_count = shot->tile_count,
 		.tiles = shot->tiles,
 		.objects = taken->objects[face],
-		.features = (const uint32_t(*)[SAMPLE_SCALES_MAX])shot->features
+		.features = (const uint32_t(*)[SAMPLE_SCALES_MAX])shot->features,
+		.windows = shot->windows,
+		.losses = shot->losses,
 	};
 }
 
@@ -438,7 +441,8 @@ static void set_choices(struct sample_grid *grid, const struct content *content)
 
 	memcpy(grid->qualities, qualities, sizeof(qualities));
 	grid->choice_count = SAMPLE_CHOICES_MAX;
-	grid->scale_count = content->quality_by_features ? SAMPLE_SCALES_MAX : 0;
+	grid->scale_count =
+		content->quality_rule == CONTENT_QUALITY_FEATURES ? SAMPLE_SCALES_MAX : 0;
 }
 
 /* Chooses grid and light for the scans' shape, and the key. */
@@ -451,11 +455,12 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 
 	if (rc < 0)
 		return rc;
-	if (content->budget_bytes > 0 && content->quality_by_features && shape->has_textures)
+	if (content->budget_bytes > 0 && content->quality_rule == CONTENT_QUALITY_FEATURES &&
+	    shape->has_textures)
 		return diagnostics_add(
 			diagnostics, -EINVAL, content->folder, 0,
 			"[samples] quality = features counts features of depth, which "
-			"faces of scans with pictures do not have; write uniform");
+			"faces of scans with pictures do not have; write gain");
 	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
 	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));

@@ -1,12 +1,14 @@
-/* Reads the sizes of all tiles at all qualities from the store's summaries, and lets the loop of
- * tile_quality.h find the quality of each. */
+/* Reads sizes and losses of all tiles at all qualities from the store's summaries, and takes the
+ * best steps, or lets the loop of tile_quality.h find the quality of each. */
 #include "pipeline/samples/tile_choice.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
+#include "pipeline/samples/tile_loss.h"
 #include "pipeline/samples/tile_quality.h"
 
 /* How far the quality of a tile with many feature points may be from that of one with few:
@@ -17,23 +19,26 @@ struct tile {
 	uint32_t sizes[SAMPLE_CHOICES_MAX];
 	/* The choice that is taken in place of each: a better one may take fewer bytes. */
 	uint8_t instead[SAMPLE_CHOICES_MAX];
+	uint32_t losses[SAMPLE_CHOICES_MAX];
 };
 
 struct chooser {
 	const struct sample_grid *grid;
 	struct tile *tiles; /* owned */
 	uint32_t count, room;
+	uint64_t windows;                        /* of all tiles */
 	uint32_t (*features)[SAMPLE_SCALES_MAX]; /* owned; of each tile */
 	uint32_t features_room;
 	uint32_t *counts; /* owned; scale by scale, as in tile_features */
 };
 
-static void take_tile(struct chooser *chooser, const uint32_t *sizes)
+static void take_tile(struct chooser *chooser, const uint32_t *sizes, const uint32_t *losses)
 {
 	struct tile *tile = &chooser->tiles[chooser->count];
 	const uint32_t best = chooser->grid->choice_count - 1;
 
 	memcpy(tile->sizes, sizes, sizeof(tile->sizes));
+	memcpy(tile->losses, losses, sizeof(tile->losses));
 	tile->instead[best] = (uint8_t)best;
 	for (uint32_t c = best; c-- > 0;) {
 		uint8_t next = tile->instead[c + 1];
@@ -50,7 +55,9 @@ static int take_face(struct chooser *chooser, const struct sample_face *face)
 	if (rc == 0)
 		rc = ARRAY_RESERVE(chooser->features, chooser->features_room, count, UINT32_MAX);
 	for (uint32_t i = 0; rc == 0 && i < face->tile_count; i++) {
-		take_tile(chooser, &face->choice_sizes[i * SAMPLE_CHOICES_MAX]);
+		take_tile(chooser, &face->choice_sizes[i * SAMPLE_CHOICES_MAX],
+			  &face->losses[i * SAMPLE_CHOICES_MAX]);
+		chooser->windows += face->windows[i];
 		if (face->features)
 			memcpy(chooser->features[chooser->count], face->features[i],
 			       sizeof(chooser->features[0]));
@@ -100,7 +107,10 @@ static uint32_t tile_bytes(void *user, uint32_t tile, uint8_t quality)
 	return chooser->tiles[tile].sizes[choice_at(chooser, tile, quality)];
 }
 
-static int choose(struct tile_choice *out, struct chooser *chooser, uint64_t budget_bytes)
+/* ---- by quality */
+
+/* Sets choices. */
+static int choose_quality(struct tile_choice *out, struct chooser *chooser, uint64_t budget_bytes)
 {
 	const struct sample_grid *grid = chooser->grid;
 	const struct tile_budget_options options = {
@@ -115,29 +125,119 @@ static int choose(struct tile_choice *out, struct chooser *chooser, uint64_t bud
 		.user = chooser,
 	};
 	struct tile_budget_result result;
+	int rc = tile_budget_meet(&result, out->choices, &options);
+
+	/* Deviations raise tiles also at the worst common quality; the smallest are the limit. */
+	if (rc == -E2BIG)
+		memset(out->choices, grid->qualities[0], chooser->count);
+	for (uint32_t i = 0; i < chooser->count; i++)
+		out->choices[i] = (uint8_t)choice_at(chooser, i, out->choices[i]);
+	return rc == -E2BIG ? 0 : rc;
+}
+
+/* ---- by gain */
+
+/* A step of a tile to a better quality. */
+struct step {
+	double gain; /* loss that it saves for each byte */
+	uint32_t tile, bytes;
+	uint8_t from, to;
+};
+
+static int by_gain(const void *left, const void *right)
+{
+	const struct step *a = left, *b = right;
+
+	if (a->gain != b->gain)
+		return a->gain < b->gain ? 1 : -1;
+	if (a->tile != b->tile)
+		return a->tile > b->tile ? 1 : -1;
+	return (a->from > b->from) - (a->from < b->from);
+}
+
+/* Adds the steps from a tile's smallest choice on, each to the choice that gains most for each
+ * byte: the convex hull, so that gains fall from step to step. Those that gain nothing come last,
+ * because a budget is to be used. */
+static uint32_t add_steps(struct step *steps, const struct chooser *chooser, uint32_t tile)
+{
+	const struct tile *of = &chooser->tiles[tile];
+	uint32_t from = of->instead[0], count = 0;
+
+	for (;;) {
+		struct step best = { .gain = -INFINITY };
+
+		for (uint32_t to = from + 1; to < chooser->grid->choice_count; to++) {
+			double bytes = (double)of->sizes[to] - of->sizes[from];
+			double gain = ((double)of->losses[from] - of->losses[to]) / fmax(bytes, 1);
+
+			if (of->sizes[to] > of->sizes[from] && gain > best.gain)
+				best = (struct step){ gain, tile, of->sizes[to] - of->sizes[from],
+						      (uint8_t)from, (uint8_t)to };
+		}
+		if (best.bytes == 0)
+			return count;
+		steps[count++] = best;
+		from = best.to;
+	}
+}
+
+/* Sets choices: takes the steps that fit, those that gain most first. */
+static int choose_gain(struct tile_choice *out, const struct chooser *chooser,
+		       uint64_t budget_bytes)
+{
+	struct step *steps =
+		malloc(((size_t)chooser->count + 1) * SAMPLE_CHOICES_MAX * sizeof(*steps));
+	uint64_t bytes = out->least_bytes;
+	uint32_t count = 0;
+
+	if (!steps)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < chooser->count; i++) {
+		out->choices[i] = chooser->tiles[i].instead[0];
+		count += add_steps(steps + count, chooser, i);
+	}
+	qsort(steps, count, sizeof(*steps), by_gain);
+	for (uint32_t s = 0; s < count; s++) {
+		const struct step *step = &steps[s];
+
+		/* After a step that did not fit, the tile's later ones start elsewhere. */
+		if (out->choices[step->tile] != step->from || bytes + step->bytes > budget_bytes)
+			continue;
+		out->choices[step->tile] = step->to;
+		bytes += step->bytes;
+	}
+	free(steps);
+	return 0;
+}
+
+/* ---- the whole */
+
+static int choose(struct tile_choice *out, struct chooser *chooser, enum tile_choice_rule rule,
+		  uint64_t budget_bytes)
+{
+	double loss = 0;
 	int rc = 0;
 
-	if (budget_bytes == 0 || chooser->count == 0)
-		memset(out->choices, grid->qualities[0], chooser->count);
-	else
-		rc = tile_budget_meet(&result, out->choices, &options);
-	/* Deviations take qualities below the worst common one; the smallest bytes are the limit.
-	 */
-	if (rc == -E2BIG && budget_bytes >= out->least_bytes) {
-		memset(out->choices, grid->qualities[0], chooser->count);
-		rc = 0;
+	if (budget_bytes == 0 || budget_bytes < out->least_bytes)
+		for (uint32_t i = 0; i < chooser->count; i++)
+			out->choices[i] = chooser->tiles[i].instead[0];
+	else if (rule == TILE_CHOICE_GAIN)
+		rc = choose_gain(out, chooser, budget_bytes);
+	else if (chooser->count > 0)
+		rc = choose_quality(out, chooser, budget_bytes);
+	for (uint32_t i = 0; rc == 0 && i < chooser->count; i++) {
+		out->bytes += chooser->tiles[i].sizes[out->choices[i]];
+		loss += chooser->tiles[i].losses[out->choices[i]];
+		out->counts[out->choices[i]]++;
 	}
-	for (uint32_t i = 0; i < chooser->count; i++) {
-		uint32_t choice = choice_at(chooser, i, out->choices[i]);
-
-		out->choices[i] = (uint8_t)choice;
-		out->bytes += chooser->tiles[i].sizes[choice];
-		out->counts[choice]++;
-	}
+	out->similarity = 1 - loss / TILE_LOSS_WINDOW / fmax(1, (double)chooser->windows);
+	if (rc == 0 && budget_bytes > 0 && budget_bytes < out->least_bytes)
+		rc = -E2BIG;
 	return rc;
 }
 
-int tile_choice_make(struct tile_choice *out, struct samples_store *store, uint64_t budget_bytes)
+int tile_choice_make(struct tile_choice *out, struct samples_store *store,
+		     enum tile_choice_rule rule, uint64_t budget_bytes)
 {
 	struct chooser chooser = { .grid = samples_store_grid(store) };
 	struct sample_face face;
@@ -159,7 +259,7 @@ int tile_choice_make(struct tile_choice *out, struct samples_store *store, uint6
 		out->most_bytes += chooser.tiles[i].sizes[chooser.grid->choice_count - 1];
 	}
 	if (rc == 0)
-		rc = choose(out, &chooser, budget_bytes);
+		rc = choose(out, &chooser, rule, budget_bytes);
 	if (rc < 0 && rc != -E2BIG)
 		tile_choice_finish(out);
 	free(chooser.tiles);

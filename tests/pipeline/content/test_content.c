@@ -81,7 +81,7 @@ static void every_key_is_read(void **state)
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
 	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
 	CHECK(content.effort == TILE_QUICK);
-	CHECK(content.quality_by_features);
+	CHECK(content.quality_rule == CONTENT_QUALITY_FEATURES);
 	CHECK(content.binary_tree && content.simplify_features);
 	CHECK(content.patch_triangles == 1000);
 	CHECK(content.block_triangles == 2000 && content.lattice_mm == 0.5);
@@ -120,7 +120,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "points", "[grid]\npoints = 33\n", "from 4 to 32" },
 		{ "points-text", "[grid]\npoints = 8x\n", "from 4 to 32" },
 		{ "effort", "[grid]\neffort = little\n", "thorough or quick" },
-		{ "quality-rule", "[samples]\nquality = best\n", "uniform or features" },
+		{ "quality-rule", "[samples]\nquality = best\n", "gain, uniform or features" },
 		{ "simplify", "[hierarchy]\nsimplify = edges\n", "quadric or features" },
 		{ "face", "[grid]\nface_px = 500\n", "512" },
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },

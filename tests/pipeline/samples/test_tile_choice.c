@@ -43,6 +43,14 @@ static uint32_t size_of(uint32_t tile, uint32_t choice)
 	return tile == 3 && choice == 1 ? 9000 : factors[choice] * (5 + tile % 7);
 }
 
+/* What it loses; with more bytes it is less. */
+static uint32_t loss_of(uint32_t tile, uint32_t choice)
+{
+	static const uint32_t losses[CHOICES] = { 90000, 40000, 10000 };
+
+	return tile % 3 == 0 ? 0 : losses[choice] * (tile == 50 ? 10 : 1);
+}
+
 static struct samples_store *fill(const struct sample_grid *grid)
 {
 	static const uint16_t places[TILES] = { 0, 1, 2, 3, 4 };
@@ -52,6 +60,8 @@ static struct samples_store *fill(const struct sample_grid *grid)
 	CHECK(samples_store_begin(dir, grid, key) == 0);
 	for (uint32_t x = 0; x < POINTS; x++) {
 		uint32_t features[TILES][SAMPLE_SCALES_MAX] = { 0 };
+		uint32_t losses[TILES * SAMPLE_CHOICES_MAX] = { 0 };
+		const uint16_t windows[TILES] = { 4, 4, 4, 4, 4 };
 		struct bytes objects[TILES * CHOICES];
 		struct sample_face face = {
 			.face = 2,
@@ -62,10 +72,14 @@ static struct samples_store *fill(const struct sample_grid *grid)
 			.tile_count = TILES,
 			.tiles = places,
 			.objects = objects,
+			.windows = windows,
+			.losses = losses,
 			.features = (const uint32_t(*)[SAMPLE_SCALES_MAX])features
 		};
 
 		for (uint32_t i = 0; i < TILES; i++) {
+			for (uint32_t c = 0; c < CHOICES; c++)
+				losses[i * SAMPLE_CHOICES_MAX + c] = loss_of(x * TILES + i, c);
 			for (uint32_t c = 0; c < CHOICES; c++)
 				objects[i * CHOICES + c] =
 					(struct bytes){ bytes, size_of(x * TILES + i, c) };
@@ -92,17 +106,16 @@ static uint64_t bytes_given(struct samples_store *store)
 	return bytes;
 }
 
-static void budgets_are_met(void **state)
+static void meets_budgets(enum tile_choice_rule rule)
 {
 	struct samples_store *store = fill(&plain);
 	struct tile_choice least, choice;
 
-	(void)state;
-	CHECK(tile_choice_make(&least, store, 0) == 0);
+	CHECK(tile_choice_make(&least, store, rule, 0) == 0);
 	CHECK(least.tile_count == ALL && least.bytes == least.least_bytes);
 	CHECK(least.counts[0] == ALL);
 	for (uint64_t budget = least.bytes; budget <= least.most_bytes + 500; budget += 61) {
-		CHECK(tile_choice_make(&choice, store, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, rule, budget) == 0);
 		CHECK(choice.bytes <= budget);
 		CHECK(choice.bytes * 100 >= budget * 98 || choice.bytes == choice.most_bytes ||
 		      budget < least.bytes + 400);
@@ -111,10 +124,42 @@ static void budgets_are_met(void **state)
 		CHECK(bytes_given(store) == choice.bytes);
 		tile_choice_finish(&choice);
 	}
-	CHECK(tile_choice_make(&choice, store, least.bytes - 1) == -E2BIG);
+	CHECK(tile_choice_make(&choice, store, rule, least.bytes - 1) == -E2BIG);
 	CHECK(choice.least_bytes == least.bytes);
 	tile_choice_finish(&choice);
 	tile_choice_finish(&least);
+	samples_store_close(store);
+}
+
+static void budgets_are_met(void **state)
+{
+	(void)state;
+	meets_budgets(TILE_CHOICE_QUALITY);
+	meets_budgets(TILE_CHOICE_GAIN);
+}
+
+/* Every third tile loses nothing at its lowest quality: bytes are for the others, of which one with
+ * ten times the loss comes first. */
+static void bytes_go_where_they_gain(void **state)
+{
+	struct samples_store *store = fill(&plain);
+	struct tile_choice gain, alike;
+	uint32_t raised;
+
+	(void)state;
+	for (uint64_t budget = 9500; budget <= 24000; budget += 1450) {
+		CHECK(tile_choice_make(&gain, store, TILE_CHOICE_GAIN, budget) == 0);
+		CHECK(tile_choice_make(&alike, store, TILE_CHOICE_QUALITY, budget) == 0);
+		CHECK(gain.similarity > alike.similarity);
+		CHECK(gain.choices[50] > 0);
+		/* but for a few with which the last bytes are used */
+		raised = 0;
+		for (uint32_t i = 0; i < ALL; i += 3)
+			raised += gain.choices[i] > 0;
+		CHECK(raised <= 3);
+		tile_choice_finish(&gain);
+		tile_choice_finish(&alike);
+	}
 	samples_store_close(store);
 }
 
@@ -126,7 +171,7 @@ static void nothing_worse_costs_more(void **state)
 
 	(void)state;
 	for (uint64_t budget = 10000; budget < 40000; budget += 777) {
-		CHECK(tile_choice_make(&choice, store, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, budget) == 0);
 		CHECK(choice.choices[3] != 1);
 		tile_choice_finish(&choice);
 	}
@@ -141,7 +186,7 @@ static void what_is_left_is_spread_over_all(void **state)
 	uint32_t better[2] = { 0 };
 
 	(void)state;
-	CHECK(tile_choice_make(&choice, store, 12000) == 0);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 12000) == 0);
 	for (uint32_t i = 0; i < ALL; i++)
 		better[i / (ALL / 2)] += choice.choices[i] > 0;
 	CHECK(better[0] > ALL / 8 && better[1] > ALL / 8);
@@ -163,7 +208,7 @@ static void relief_gets_more(void **state)
 	for (uint64_t budget = 12000; budget <= 26000; budget += 14000) {
 		uint32_t sums[2] = { 0 };
 
-		CHECK(tile_choice_make(&choice, store, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, budget) == 0);
 		CHECK(choice.bytes <= budget && choice.bytes * 100 >= budget * 98);
 		for (uint32_t i = 0; i < ALL; i++)
 			sums[i / (ALL / 2)] += choice.choices[i];
@@ -180,7 +225,7 @@ static void the_choice_is_kept_until_samples_change(void **state)
 	struct sample_grid other = plain;
 
 	(void)state;
-	CHECK(tile_choice_make(&choice, store, 15000) == 0);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 15000) == 0);
 	CHECK(samples_store_choose(store, choice.choices, choice.tile_count) == 0);
 	CHECK(samples_store_keep_choice(store) == 0);
 	samples_store_close(store);
@@ -203,7 +248,7 @@ static void a_store_without_a_choice_is_refused(void **state)
 	(void)state;
 	grid.choice_count = 1;
 	store = fill(&grid);
-	CHECK(tile_choice_make(&choice, store, 10000) == -EINVAL);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 10000) == -EINVAL);
 	CHECK(bytes_given(store) > 0);
 	samples_store_close(store);
 }
@@ -212,6 +257,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(budgets_are_met),
+		cmocka_unit_test(bytes_go_where_they_gain),
 		cmocka_unit_test(nothing_worse_costs_more),
 		cmocka_unit_test(what_is_left_is_spread_over_all),
 		cmocka_unit_test(relief_gets_more),
