@@ -66,14 +66,16 @@ void view_draw_destroy(struct view_draw *draw)
 	free(draw);
 }
 
-/* From near to far, so that what is hidden is not decoded. */
-static int draw_pieces(struct view_draw *draw, const struct camera *square, float detail_px)
+/* What the view shows, which is less than the square. From near to far, so that what is hidden is
+ * not decoded. */
+static int draw_pieces(struct view_draw *draw, const struct camera *view,
+		       const struct camera *square, float detail_px)
 {
 	const uint32_t *pieces;
 	uint32_t count;
 	float matrix[16];
 
-	camera_matrix(square, matrix);
+	camera_matrix(view, matrix);
 	sight_look(draw->sight, square->eye_m, detail_px / camera_px_per_radian(square));
 	pieces = sight_visible(draw->sight, matrix, square->eye_m, &count);
 	raster_begin(draw->raster, square);
@@ -140,7 +142,7 @@ int view_draw_image(struct view_draw *draw, const struct camera *camera, float d
 	square.width_px = square.height_px = (int)draw->side_px;
 	square.fov_deg =
 		atanf(half * (float)draw->side_px / (float)draw->height_px) * 360 / (float)M_PI;
-	rc = draw_pieces(draw, &square, detail_px);
+	rc = draw_pieces(draw, camera, &square, detail_px);
 	if (rc < 0)
 		return rc;
 	memset(draw->inverse_m, 0, pixels * sizeof(*draw->inverse_m));
