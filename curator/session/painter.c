@@ -24,6 +24,11 @@ enum {
 	JPEG_BYTES_MAX = 16 << 20,
 };
 
+/* Four places in a pixel, each in a row and a column of its own: the steps of nearly level and
+ * nearly upright edges become four finer ones. */
+static const float shifts_px[][2] = {
+	{ -0.125f, -0.375f }, { 0.375f, -0.125f }, { 0.125f, 0.375f }, { -0.375f, 0.125f }
+};
 static const float detail_sharp_px = 1, detail_fast_min_px = 1.5f, detail_fast_max_px = 12;
 /* The region's surface may lie so many pixels (of the detail drawn) behind the model's: the model
  * is drawn from simpler patches. */
@@ -44,6 +49,9 @@ struct painter {
 	struct canvas sharp, fast;
 	struct camera sharp_camera;
 	bool has_sharp;
+	struct canvas shifted; /* the sharp view, seen past other parts of its pixels */
+	uint16_t *sums; /* owned; of shifts_done pictures, red, green and blue of each pixel */
+	uint32_t shifts_done;
 	float detail_fast_px;
 };
 
@@ -87,6 +95,8 @@ void painter_destroy(struct painter *painter)
 		return;
 	canvas_finish(&painter->sharp); /* before the models that they borrow */
 	canvas_finish(&painter->fast);
+	canvas_finish(&painter->shifted);
+	free(painter->sums);
 	model_destroy(painter->model);
 	model_destroy(painter->region);
 	free(painter);
@@ -188,12 +198,17 @@ static void paint_pixel(const struct painter *painter, struct canvas *canvas, ui
 		to[c] = (uint8_t)rgb[c];
 }
 
-static int paint(const struct painter *painter, struct canvas *canvas, int quality,
-		 struct buffer *out)
+static void paint_pixels(const struct painter *painter, struct canvas *canvas)
 {
 	for (uint32_t y = 0; y < canvas->height_px; y++)
 		for (uint32_t x = 0; x < canvas->width_px; x++)
 			paint_pixel(painter, canvas, x, y);
+}
+
+static int paint(const struct painter *painter, struct canvas *canvas, int quality,
+		 struct buffer *out)
+{
+	paint_pixels(painter, canvas);
 	return picture_encode_jpeg(out, &canvas->picture, quality);
 }
 
@@ -219,10 +234,92 @@ int painter_draw_again(struct painter *painter, struct buffer *out)
 {
 	int rc = painter->has_sharp ? 0 : -EINVAL;
 
+	painter->shifts_done = 0;
 	if (rc == 0)
 		rc = mark_region(painter, &painter->sharp, &painter->sharp_camera, detail_sharp_px);
 	return rc == 0 ? paint(painter, &painter->sharp, JPEG_QUALITY_SHARP, out) : rc;
 }
+
+/* ---- smooth edges */
+
+/* Turns a camera so little that its middle moves by so many pixels. */
+static void shift_camera(struct camera *camera, const float by_px[2])
+{
+	const float distance_m = vec_distance(camera->target_m, camera->eye_m);
+	float ray[3];
+
+	camera_ray(camera, (float)camera->width_px / 2 + by_px[0],
+		   (float)camera->height_px / 2 + by_px[1], ray);
+	vec_copy(camera->target_m, camera->eye_m);
+	vec_add_scaled(camera->target_m, camera->target_m, distance_m, ray);
+}
+
+static int make_room_for_sums(struct painter *painter)
+{
+	const struct canvas *sharp = &painter->sharp;
+	const bool is_new = painter->shifted.width_px != sharp->width_px ||
+			    painter->shifted.height_px != sharp->height_px;
+	int rc = canvas_resize(painter, &painter->shifted, sharp->width_px, sharp->height_px);
+
+	if (rc == 0 && is_new) {
+		free(painter->sums);
+		painter->sums = malloc((size_t)sharp->width_px * sharp->height_px * 3 *
+				       sizeof(*painter->sums));
+		painter->shifts_done = 0;
+		rc = painter->sums ? 0 : -ENOMEM;
+		if (rc < 0)
+			canvas_finish(&painter->shifted);
+	}
+	return rc;
+}
+
+static void add_picture(struct painter *painter)
+{
+	const struct canvas *canvas = &painter->shifted;
+	const size_t pixels = (size_t)canvas->width_px * canvas->height_px;
+
+	if (painter->shifts_done == 0)
+		memset(painter->sums, 0, pixels * 3 * sizeof(*painter->sums));
+	for (size_t i = 0; i < pixels; i++)
+		for (size_t c = 0; c < 3; c++)
+			painter->sums[3 * i + c] += canvas->picture.rgba[4 * i + c];
+	painter->shifts_done++;
+}
+
+static int encode_mean(struct painter *painter, struct buffer *out)
+{
+	struct picture *picture = &painter->shifted.picture;
+	const size_t pixels = (size_t)picture->width * picture->height;
+	const uint32_t count = painter->shifts_done;
+
+	for (size_t i = 0; i < pixels; i++)
+		for (size_t c = 0; c < 3; c++)
+			picture->rgba[4 * i + c] =
+				(uint8_t)((painter->sums[3 * i + c] + count / 2) / count);
+	painter->shifts_done = 0;
+	return picture_encode_jpeg(out, picture, JPEG_QUALITY_SHARP);
+}
+
+int painter_smooth(struct painter *painter, struct buffer *out)
+{
+	struct camera camera = painter->sharp_camera;
+	int rc = painter->has_sharp ? make_room_for_sums(painter) : -EINVAL;
+
+	if (rc < 0)
+		return rc;
+	shift_camera(&camera, shifts_px[painter->shifts_done]);
+	rc = view_draw_image(painter->shifted.model, &camera, detail_sharp_px,
+			     &painter->shifted.view);
+	if (rc == 0)
+		rc = mark_region(painter, &painter->shifted, &camera, detail_sharp_px);
+	if (rc < 0)
+		return rc;
+	paint_pixels(painter, &painter->shifted);
+	add_picture(painter);
+	return painter->shifts_done < ARRAY_COUNT(shifts_px) ? 1 : encode_mean(painter, out);
+}
+
+/* ---- fast frames */
 
 static int draw_fast(struct painter *painter, const struct camera *camera, struct buffer *out)
 {

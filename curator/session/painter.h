@@ -28,6 +28,12 @@ must_check int painter_draw(struct painter *painter, const struct camera *camera
 /* Appends the last sharp view again, with the region as it is now. Errors likewise. */
 must_check int painter_draw_again(struct painter *painter, struct buffer *out);
 
+/* Draws one more of the views whose mean is the last sharp view without steps at its edges. Returns
+ * 1: there are more to draw; 0: that was the last one, and the mean's JPEG is appended; the next
+ * call begins anew. painter_draw of a sharp view and painter_draw_again begin anew too. Errors as
+ * of painter_draw; -EINVAL: there is no sharp view. */
+must_check int painter_smooth(struct painter *painter, struct buffer *out);
+
 /* Returns the last sharp view, borrowed until the next painter_draw of a sharp one; NULL: there is
  * none. */
 const struct view_image *painter_view(const struct painter *painter, struct camera *camera);

@@ -24,6 +24,7 @@ enum {
 	FRAMES_UNDERWAY_MAX = 2, /* pictures sent whose arrival is not yet known */
 	PREPARE_AFTER_MS = 250,  /* at rest for so long, the tools get ready */
 	FRAME_SHARP = 1,
+	FRAME_SMOOTH = 2,
 	TEXT_BYTES_MAX = 4 << 20,
 };
 
@@ -35,7 +36,7 @@ struct session {
 	struct painter *painter; /* owned */
 	struct selection selection;
 	uint32_t sharp_view; /* the number of the sharp view's camera */
-	bool region_changed, prepared;
+	bool region_changed, prepared, smoothed;
 
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
@@ -274,12 +275,12 @@ static void carry_out(struct session *session, const struct request *request)
 
 /* ---- pictures */
 
-/* Begins a picture: the number of its camera, and whether it is sharp. */
-static void begin_frame(struct buffer *frame, uint32_t view, bool sharp)
+/* Begins a picture: the number of its camera, and what it is. */
+static void begin_frame(struct buffer *frame, uint32_t view, unsigned flags)
 {
 	buffer_init(frame, SESSION_MESSAGE_BYTES_MAX);
 	buffer_put_u32(frame, view);
-	buffer_put_u32(frame, sharp ? FRAME_SHARP : 0);
+	buffer_put_u32(frame, flags);
 }
 
 /* frame is taken. */
@@ -317,7 +318,7 @@ static void draw(struct session *session, const struct request *camera)
 	int rc;
 
 	set_depths(session->options.site, &eye);
-	begin_frame(&frame, camera->view, !camera->moving);
+	begin_frame(&frame, camera->view, camera->moving ? 0 : FRAME_SHARP);
 	if (!camera->moving)
 		selection_leave(&session->selection);
 	rc = painter_draw(session->painter, &eye, !camera->moving, &frame);
@@ -330,7 +331,7 @@ static void draw(struct session *session, const struct request *camera)
 	if (rc < 0)
 		send_error(session, strerror(-rc));
 	session->sharp_view = camera->view;
-	session->prepared = false;
+	session->prepared = session->smoothed = false;
 }
 
 /* Shows the last sharp view with the region as it is now. */
@@ -339,16 +340,32 @@ static void draw_again(struct session *session)
 	struct buffer frame;
 	int rc;
 
-	begin_frame(&frame, session->sharp_view, true);
+	begin_frame(&frame, session->sharp_view, FRAME_SHARP);
 	rc = painter_draw_again(session->painter, &frame);
 	send_frame(session, &frame, rc);
-	session->region_changed = false;
+	session->region_changed = session->smoothed = false;
+}
+
+/* A step towards the same picture with smooth edges, which is sent after the last one. */
+static void smooth(struct session *session)
+{
+	struct buffer frame;
+	int rc;
+
+	begin_frame(&frame, session->sharp_view, FRAME_SHARP | FRAME_SMOOTH);
+	rc = painter_smooth(session->painter, &frame);
+	if (rc > 0) {
+		buffer_finish(&frame);
+		return;
+	}
+	session->smoothed = true;
+	send_frame(session, &frame, rc);
 }
 
 /* ---- the thread */
 
 /* What is next; under the lock. */
-enum task { TASK_NONE, TASK_END, TASK_COMMAND, TASK_DRAW, TASK_AGAIN };
+enum task { TASK_NONE, TASK_END, TASK_COMMAND, TASK_DRAW, TASK_AGAIN, TASK_SMOOTH };
 
 static enum task next_task(const struct session *session)
 {
@@ -364,6 +381,9 @@ static enum task next_task(const struct session *session)
 	if (may_draw && session->region_changed && session->selection.image &&
 	    !session->camera.moving)
 		return TASK_AGAIN;
+	if (may_draw && session->prepared && !session->smoothed && session->selection.image &&
+	    !session->camera.moving)
+		return TASK_SMOOTH;
 	return TASK_NONE;
 }
 
@@ -432,6 +452,9 @@ static void *work(void *user)
 			break;
 		case TASK_AGAIN:
 			draw_again(session);
+			break;
+		case TASK_SMOOTH:
+			smooth(session);
 			break;
 		case TASK_NONE:
 			prepare(session);

@@ -17,6 +17,7 @@ import sys
 import time
 
 WIDTH, HEIGHT = 1280, 720
+SMOOTH = "smooth"  # what a picture is that has smooth edges
 
 
 sign_ins = {}
@@ -87,7 +88,7 @@ class Browser:
         self.send_raw(json.dumps({"type": kind, **values}).encode())
 
     def receive(self):
-        """Returns ("text", object) or ("picture", view, sharp, jpeg)."""
+        """Returns ("text", object) or ("picture", view, sharp, jpeg); sharp may be SMOOTH."""
         whole = b""
         while True:
             first, second = self.take(2)
@@ -111,7 +112,7 @@ class Browser:
             return ("text", json.loads(whole))
         self.send("got")
         view, flags = struct.unpack("<II", whole[:8])
-        return ("picture", view, bool(flags & 1), whole[8:])
+        return ("picture", view, SMOOTH if flags & 2 else bool(flags & 1), whole[8:])
 
     def text(self, kind):
         """Returns the next text of that kind; pictures and other texts before it are dropped."""
@@ -265,6 +266,21 @@ def check_tools(browser):
     assert "at" not in browser.text("point")
 
 
+def check_smooth(browser, eye, target):
+    """A while after the sharp picture the same one comes with smooth edges, and again after a change of the region."""
+    browser.look(eye, target)
+    sharp = browser.picture()
+    smooth = browser.picture(SMOOTH)
+    assert jpeg_size(smooth) == jpeg_size(sharp) and smooth != sharp
+    assert len(smooth) < len(sharp), (len(smooth), len(sharp))  # it has fewer steps to encode
+    browser.stroke("lasso", circle(120))
+    browser.text("region")
+    browser.picture()
+    assert browser.picture(SMOOTH) != smooth
+    browser.ask("undo")
+    browser.picture()
+
+
 def check_parts(browser, port, folder):
     before = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
     browser.send("save", id="the-middle", title="The middle")
@@ -362,6 +378,7 @@ def check(port, folder):
     browser.look(eye, target)
     assert jpeg_size(browser.picture()) == (WIDTH, HEIGHT)
     check_malformed(browser)
+    check_smooth(browser, eye, target)
     check_tools(browser)
     check_parts(browser, port, folder)
     check_two(port, eye, target)
