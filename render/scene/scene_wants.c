@@ -55,6 +55,9 @@ static uint32_t least_priority(const struct scene *scene, float lasts)
 
 /* ---- the streaming mesh, and the first cut of patches */
 
+/* Both come before the texts: a visitor looks first. */
+enum { FIRST_PRIORITY = MESSAGE_PRIORITY_INDEX };
+
 /* Returns what a surface with this error in pixels costs the picture, on the scale of plan_worth.
  * An image adds octaves of detail even to a rough surface; a finer surface puts them in the right
  * place. */
@@ -80,7 +83,7 @@ static float stream_costs(const struct scene *scene, uint32_t blocks)
 static void want_stream(struct scene *scene)
 {
 	const struct stream_growth *growth = &scene->stream.growth;
-	uint32_t last = scene->root_child_count - 1, most = MESSAGE_PRIORITY_INDEX - 1;
+	uint32_t last = scene->root_child_count - 1, most = 2 * MESSAGE_PRIORITY_INDEX - 1;
 	if (!growth->decoder) {
 		want_child_of_root(scene, OBJECT_STREAM, last, 2 * MESSAGE_PRIORITY_INDEX + 1);
 		return;
@@ -90,8 +93,10 @@ static void want_stream(struct scene *scene)
 		return;
 	for (uint32_t i = 0; i < growth->page.child_count; i++) {
 		const struct page_child *block = &growth->page.children[i];
-		uint32_t priority = plan_priority(
-			stream_costs(scene, i) - stream_costs(scene, i + 1), block->size);
+		uint32_t priority =
+			FIRST_PRIORITY +
+			plan_priority(stream_costs(scene, i) - stream_costs(scene, i + 1),
+				      block->size);
 		place.hash = block->hash;
 		place.size = block->size;
 		/* No block is of use before the one before it. */
@@ -120,7 +125,7 @@ static void want_first_cut(struct scene *scene)
 	uint32_t bytes = 0, priority;
 	for (uint32_t g = 0; g < count; g++)
 		bytes += scene->geometry.loaded[g] ? 0 : scene->groups[g].size;
-	priority = plan_priority(stream_costs(scene, growth->block_count), bytes);
+	priority = FIRST_PRIORITY + plan_priority(stream_costs(scene, growth->block_count), bytes);
 	for (uint32_t g = 0; g < count; g++)
 		if (!scene->geometry.loaded[g])
 			want_group(scene, g, priority + (count - g < 1000 ? count - g : 1000));
