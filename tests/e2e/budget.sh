@@ -55,9 +55,14 @@ for share in 60 85; do
 	build at$share --budget ${budget}B --jobs 1
 	met "$share %" "$budget"
 done
-# Samples and all, with other jobs: the same bytes.
+# Samples and all, in shards and with other jobs: the same bytes, and the build finds all samples there.
 rm -rf "$content/.work"
+for shard in 0 1; do
+	build/gopura-content sample --for-budget --shard $shard/2 --jobs 1 "$content" >/dev/null 2>&1 || fail "shard $shard"
+done
+touch "$work/sampled"
 build again --budget ${budget}B --jobs 3
+[ -z "$(find "$content/.work/samples" -name '*-*-*' -newer "$work/sampled")" ] || fail "the build sampled again"
 [ "$(cat "$work"/at85/packs/* | sha256sum)" = "$(cat "$work"/again/packs/* | sha256sum)" ] || fail "jobs change bytes"
 
 # ---- just too small: named exactly, nothing published
