@@ -47,6 +47,8 @@ static int inspect_place(const char *place, const char *ca_file, char **names, i
 	struct hash object;
 	int rc = release_reader_create(&reader, &options);
 
+	if (rc < 0)
+		fprintf(stderr, "gopura-content inspect: %s: %s\n", place, strerror(-rc));
 	if (rc == 0 && name_count == 0)
 		rc = inspect_release(stdout, reader);
 	for (int i = 0; rc == 0 && i < name_count; i++) {

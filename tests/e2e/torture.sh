@@ -1,0 +1,96 @@
+#!/bin/bash
+# Every allocation and every call on a file: a program's use is repeated with its n-th malloc failing, then with its n-th
+# open, read, write, fsync, rename, mmap ... failing (tests/tools/failing_calls.c). It may succeed without what failed, or end
+# with status 1 to 3 and a line that says what is wrong; it may not crash, hang, or fail without a word. What is made is
+# whole or not there: after a failed build the next one makes the release that it would have made.
+#
+#   make torture            every n of every use
+#   SAMPLES=N               so many of each, spread over all (default 2; all: 0)
+#   USES="verify build"     of these alone
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+. tests/e2e/lib-content.sh
+work=build/e2e/torture samples=${SAMPLES:-2}
+rm -rf "$work"
+mkdir -p "$work/content"
+shim=$PWD/build/tests/tools/failing_calls.so content=build/gopura-content
+tiny_content "$work/content" 10000 5000
+"$content" build "$work/content" --out "$work/release" --keys "$work/keys" --jobs 1 >"$work/log" 2>&1 || { cat "$work/log"; fail build; }
+cp -a "$work/release" "$work/reference"
+printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n' >"$work/gopura.conf"
+cp "$work/keys/root/1.json" "$work/"
+
+# use NAME: one use of a program, from a fresh state
+use() {
+	case $1 in
+	keys) exec "$content" keys "$work/content" --keys "$work/new" ;;
+	temple) exec "$content" temple --triangles 10000 --out "$work/new.ply" ;;
+	inspect) exec "$content" inspect "$work/release" ;;
+	verify) exec "$content" verify "$work/release" ;;
+	import) exec "$content" import "$work/content/temple.ply" ;;
+	publish) exec "$content" publish "$work/content" --out "$work/release" --keys "$work/keys" --comment "$RANDOM" ;;
+	build) exec "$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 ;;
+	setup) exec build/gopura-setup --check "$work/gopura.conf" ;;
+	esac
+}
+# prepare NAME: what a use begins with
+prepare() {
+	rm -rf "$work/new" "$work/fresh" "$work/made"
+	[ "$1" = build ] || return 0
+	mkdir "$work/fresh"
+	cp -a "$work/content/." "$work/fresh/"
+	rm -rf "$work/fresh/.work"
+}
+
+runs=0 survived=0 faults=0
+fault() { faults=$((faults + 1)); echo "  FAULT $*"; sed 's/^/        /' "$work/said" | tail -n 5; }
+
+# strain NAME KIND ERRNO N
+strain() {
+	local status=0
+	prepare "$1"
+	(
+		export FAIL_KIND=$2 FAIL_ERRNO=$3 FAIL_AT=$4 LD_PRELOAD=$shim
+		use "$1"
+	) >"$work/said" 2>&1 || status=$?
+	runs=$((runs + 1))
+	[ "$status" != 0 ] || survived=$((survived + 1))
+	[ "$status" -le 3 ] || fault "$1: $2 call $4 (errno $3) ended it with status $status"
+	[ "$status" = 0 ] || [ -s "$work/said" ] || fault "$1: $2 call $4 (errno $3): it failed without a word"
+	case $1 in
+	publish | inspect | verify)
+		"$content" verify "$work/release" >"$work/said" 2>&1 || fault "$1: $2 call $4: the release is damaged" ;;
+	build)
+		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
+			diff -rq "$work/reference/packs" "$work/made/packs" >>"$work/said" || fault "build: $2 call $4: the next one makes another release" ;;
+	esac
+}
+
+# all NAME KIND ERRNO
+all() {
+	local calls step n
+	prepare "$1"
+	rm -f "$work/count"
+	(
+		export FAIL_KIND=$2 FAIL_COUNT=$work/count LD_PRELOAD=$shim
+		use "$1"
+	) >"$work/said" 2>&1 || fault "$1 fails without a failing call"
+	calls=$(sort -n "$work/count" | tail -n 1)
+	step=1
+	[ "$samples" = 0 ] || step=$(((calls + samples - 1) / samples))
+	[ "$step" -gt 0 ] || step=1
+	for ((n = 1 + RANDOM % step; n <= calls; n += step)); do strain "$1" "$2" "$3" "$n"; done
+	echo "$1: $calls calls of $2, errno $3"
+}
+
+RANDOM=${SEED:-1}
+for name in ${USES:-keys temple inspect verify import publish setup build}; do
+	all "$name" memory 12
+	all "$name" io 5  # EIO
+	all "$name" io 28 # ENOSPC
+	all "$name" io 4  # EINTR
+	all "$name" short 0
+done
+echo "$runs runs, $survived went on without what failed, $faults faults"
+[ "$faults" = 0 ]
