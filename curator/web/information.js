@@ -217,9 +217,9 @@ async function save() {
     const good = await saveTexts() && await savePage();
     setDirty(!good);
     if (good) {
-      if (byId("message").hidden) byId("state").textContent = "Saved";
       await loadInformation();
       showPanel();
+      if (byId("message").hidden) byId("state").textContent = "Saved";
     }
   } catch (failure) {
     fail(failure);

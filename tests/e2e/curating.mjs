@@ -76,6 +76,10 @@ try {
     await write();
   }
   assert.deepEqual(browser.complaints, []);
+} catch (failure) {
+  await browser.picture(`${folder}/failed.png`);
+  console.error(browser.complaints, await browser.evaluate(`document.body.innerText`));
+  throw failure;
 } finally {
   await browser.close();
 }
