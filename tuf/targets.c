@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "tuf/workflow_parts.h"
+#include "tuf/role_files.h"
 
 enum { DELEGATIONS_MAX = 32 }; /* files in one search */
 

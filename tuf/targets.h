@@ -19,6 +19,10 @@ struct tuf_target {
  * most 32 delegated files are looked at. Returns 0, -ENOENT: no such target, or as above. *out is
  * zeroed on failure. */
 must_check int tuf_client_find(struct tuf_client *client, const char *path, struct tuf_target *out);
+/* Brings the targets file of the top up to date; a part of tuf_client_refresh, which returns what
+ * this does. */
+must_check int tuf_update_targets(struct tuf_client *client);
+
 /* Returns whether a file is that target. */
 bool tuf_target_is(const struct tuf_target *target, struct bytes file);
 /* Frees it. Zeroed is fine. */

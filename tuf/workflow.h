@@ -42,8 +42,4 @@ must_check int tuf_client_refresh(struct tuf_client *client, const struct tuf_io
 /* Frees everything. Zeroed is fine. */
 void tuf_client_finish(struct tuf_client *client);
 
-/* Writes name with all but letters, digits and _.-~ as %XX, as a part of a URL or the name of a
- * file. Returns -EFBIG where it does not fit. */
-must_check int tuf_quote(char *out, size_t room, const char *name);
-
 #endif

@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "pipeline/release/release_tuf.h"
 
 enum { DAY_S = 86400 };
 
@@ -65,6 +66,9 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 	}
 	rc = release_files_write(target->release, target->keys_folder, target->keys, &release,
 				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+	if (rc == 0)
+		rc = release_tuf_write(target->release, target->keys_folder, target->keys, &release,
+				       life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
 	if (rc == 0) {
 		report->release = release;
 		report->changed = true;
@@ -74,8 +78,10 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 
 int publish_renew(const struct publish_target *target)
 {
-	return release_files_renew(target->release, target->keys,
-				   life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+	const int64_t life_s = life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS);
+	const int rc = release_files_renew(target->release, target->keys, life_s);
+
+	return rc < 0 ? rc : release_tuf_renew(target->release, target->keys, life_s);
 }
 
 static int make_root(struct page_child *out, struct object_store *objects,

@@ -13,7 +13,6 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/metadata_sign.h"
-#include "pipeline/release/release_tuf.h"
 
 static int make_path(char path[PATH_MAX], const char *release, const char *name)
 {
@@ -227,9 +226,6 @@ int release_files_write(const char *release, const char *keys_folder,
 	if (rc == 0)
 		rc = replace_both(release, keys, what->sequence, buffer_bytes(&file),
 				  timestamp_life_s);
-	if (rc == 0)
-		rc = release_tuf_write(release, keys_folder, keys, what, buffer_bytes(&file),
-				       timestamp_life_s);
 	buffer_finish(&file);
 	return rc;
 }
@@ -253,7 +249,5 @@ int release_files_renew(const char *release, const struct publisher_keys *keys,
 				       buffer_bytes(&file), timestamp_life_s);
 	rc = replace(&timestamp, rc);
 	buffer_finish(&file);
-	if (rc == 0)
-		rc = bytes_sync_folder_of(timestamp.path);
-	return rc < 0 ? rc : release_tuf_renew(release, keys, timestamp_life_s);
+	return rc < 0 ? rc : bytes_sync_folder_of(timestamp.path);
 }

@@ -177,17 +177,20 @@ static int put_all(const char *release, const struct publisher_keys *keys,
 
 int release_tuf_write(const char *release, const char *keys_folder,
 		      const struct publisher_keys *keys, const struct release *what,
-		      struct bytes release_file, int64_t timestamp_life_s)
+		      int64_t timestamp_life_s)
 {
-	struct buffer file;
+	struct buffer file, release_file;
 	int rc;
 
 	buffer_init(&file, FILE_BYTES_MAX);
+	buffer_init(&release_file, METADATA_FILE_BYTES_MAX);
 	rc = keys_read_tuf_root(&file, keys_folder, 1);
 	if (rc == -ENOENT) {
 		buffer_finish(&file);
 		return 0;
 	}
+	if (rc == 0 && (rc = read_file(&release_file, release, "release.json")) < 0)
+		complain(release, "release.json", rc);
 	if (rc == 0)
 		rc = make_folder(release, "tuf");
 	if (rc == 0)
@@ -195,7 +198,9 @@ int release_tuf_write(const char *release, const char *keys_folder,
 	if (rc == 0)
 		rc = copy_roots(release, keys_folder, &file);
 	if (rc == 0)
-		rc = put_all(release, keys, what, release_file, timestamp_life_s, &file);
+		rc = put_all(release, keys, what, buffer_bytes(&release_file), timestamp_life_s,
+			     &file);
+	buffer_finish(&release_file);
 	buffer_finish(&file);
 	return rc;
 }

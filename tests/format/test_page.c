@@ -109,7 +109,7 @@ static void refuses_what_no_encoder_writes(void **state)
 	(void)state;
 	CHECK(decode_with(0, 'g') == -EBADMSG);     /* magic */
 	CHECK(decode_with(4, 0) == -EBADMSG);       /* kind */
-	CHECK(decode_with(4, 8) == -EBADMSG);       /* kind */
+	CHECK(decode_with(4, 9) == -EBADMSG);       /* kind */
 	CHECK(decode_with(6, 2) == -EBADMSG);       /* version */
 	CHECK(decode_with(8, 4) == -EBADMSG);       /* more children than bytes */
 	CHECK(decode_with(11, 0xff) == -EBADMSG);   /* absurdly more */

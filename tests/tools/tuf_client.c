@@ -18,6 +18,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tuf/role_files.h"
 #include "tuf/targets.h"
 
 struct options {

@@ -1,10 +1,14 @@
-/* What the files of the client share. Private to tuf/workflow.c and tuf/targets.c. */
-#ifndef GOPURA_TUF_WORKFLOW_PARTS_H
-#define GOPURA_TUF_WORKFLOW_PARTS_H
+/* The files of roles for the client's workflow: fetched, loaded, stored, opened. */
+#ifndef GOPURA_TUF_ROLE_FILES_H
+#define GOPURA_TUF_ROLE_FILES_H
 
 #include "tuf/workflow.h"
 
 enum { TUF_TARGETS_BYTES_MAX = 5 << 20, TUF_NAME_MAX = 1024 /* of a quoted name */ };
+
+/* Writes name with all but letters, digits and _.-~ as %XX, as a part of a URL or the name of a
+ * file. Returns -EFBIG where it does not fit. */
+must_check int tuf_quote(char *out, size_t room, const char *name);
 
 /* Sets client->why and returns code. */
 int tuf_refuse(struct tuf_client *client, int code, const char *format, ...) printf_like(3, 4);
@@ -25,8 +29,5 @@ must_check int tuf_open_file(struct tuf_client *client, struct tuf_file *out,
 			     const struct cJSON *keys, const struct cJSON *by);
 must_check int tuf_check_expiry(struct tuf_client *client, const struct tuf_file *file,
 				const char *role);
-
-/* Brings the top's targets file up to date. */
-must_check int tuf_update_targets(struct tuf_client *client);
 
 #endif
