@@ -22,7 +22,7 @@
 /* Sizes of the scans. Sanitized, which is ten times slower, the smaller ones go through the same
  * code. */
 #ifdef __SANITIZE_ADDRESS__
-enum { CUTS = 200, TEMPLE = 60, RELIEF = 80, FEATURES = 30, TREE = 40, STONES = 1000 };
+enum { CUTS = 200, TEMPLE = 60, RELIEF = 80, FEATURES = 50, TREE = 40, STONES = 1000 };
 #else
 enum { CUTS = 1000, TEMPLE = 90, RELIEF = 120, FEATURES = 80, TREE = 60, STONES = 2000 };
 #endif
