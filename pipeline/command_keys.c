@@ -22,7 +22,7 @@ static const char help[] =
 	"replaced. `build` and `publish` make missing keys too. Keys that an earlier version made in\n"
 	"DIR/keys are moved out of it.\n"
 	"\n"
-	"  --tuf           also sign releases as The Update Framework does, from the next one on: makes\n"
+	"  --tuf           also sign releases as The Update Framework does, from the next publish on: makes\n"
 	"                  tuf/1.root.json beside the keys, for which root.key must be there\n"
 	"\n"
 	"Keep a copy of root.key in a safe place, off this machine; publishing needs only the other\n"

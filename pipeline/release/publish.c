@@ -46,6 +46,12 @@ static int64_t life_or(int64_t life_s, int days)
 	return life_s > 0 ? life_s : (int64_t)days * DAY_S;
 }
 
+static int sign_tuf(const struct publish_target *target, const struct release *release)
+{
+	return release_tuf_write(target->release, target->keys_folder, target->keys, release,
+				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+}
+
 /* Signs and writes the files of the next release. */
 static int sign(struct publish_report *report, const struct publish_target *target,
 		const struct page_child *root, uint64_t sequence)
@@ -67,8 +73,7 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 	rc = release_files_write(target->release, target->keys_folder, target->keys, &release,
 				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
 	if (rc == 0)
-		rc = release_tuf_write(target->release, target->keys_folder, target->keys, &release,
-				       life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+		rc = sign_tuf(target, &release);
 	if (rc == 0) {
 		report->release = release;
 		report->changed = true;
@@ -78,10 +83,13 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 
 int publish_renew(const struct publish_target *target)
 {
-	const int64_t life_s = life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS);
-	const int rc = release_files_renew(target->release, target->keys, life_s);
+	struct release current;
+	int rc = release_files_renew(target->release, target->keys,
+				     life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
 
-	return rc < 0 ? rc : release_tuf_renew(target->release, target->keys, life_s);
+	if (rc == 0)
+		rc = release_files_current(&current, target->release, target->keys);
+	return rc < 0 ? rc : sign_tuf(target, &current);
 }
 
 static int make_root(struct page_child *out, struct object_store *objects,

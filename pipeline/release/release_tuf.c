@@ -146,21 +146,25 @@ static int put_timestamp(const char *release, const struct publisher_keys *keys,
 		   &keys->timestamp);
 }
 
-static int put_all(const char *release, const struct publisher_keys *keys,
-		   const struct release *what, struct bytes release_file, int64_t life_s,
-		   struct buffer *file)
+/* Reads the snapshot of a version, if there is one. */
+static bool has_snapshot(const char *release, uint32_t version, struct buffer *file)
+{
+	char name[64];
+
+	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".snapshot.json", version);
+	return read_file(file, release, name) == 0;
+}
+
+/* Leaves the snapshot's bytes in *file. */
+static int put_new(const char *release, const struct publisher_keys *keys,
+		   const struct release *what, struct bytes release_file, struct buffer *file)
 {
 	const uint32_t version = (uint32_t)what->sequence;
 	cJSON *targets = targets_of(what, release_file);
-	uint32_t before, next = next_timestamp(release, file, &before);
 	char name[64];
-	int rc;
+	int rc = targets ? put_target(release, targets, release_file)
+			 : complain(release, "tuf", -ENOMEM);
 
-	if (what->sequence > UINT32_MAX || !targets) {
-		cJSON_Delete(targets);
-		return complain(release, "tuf", targets ? -ERANGE : -ENOMEM);
-	}
-	rc = put_target(release, targets, release_file);
 	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".targets.json", version);
 	if (rc < 0)
 		cJSON_Delete(targets);
@@ -172,6 +176,22 @@ static int put_all(const char *release, const struct publisher_keys *keys,
 			 naming(TUF_SNAPSHOT, version, what->expires_s, "targets.json", version,
 				buffer_bytes(file)),
 			 &keys->release);
+	return rc;
+}
+
+static int put_all(const char *release, const struct publisher_keys *keys,
+		   const struct release *what, struct bytes release_file, int64_t life_s,
+		   struct buffer *file)
+{
+	const uint32_t version = (uint32_t)what->sequence;
+	uint32_t before, next = next_timestamp(release, file, &before);
+	int rc = 0;
+
+	if (what->sequence > UINT32_MAX)
+		return complain(release, "tuf", -ERANGE);
+	/* A publisher that was killed may have left a timestamp of the release before. */
+	if (before != version || !has_snapshot(release, version, file))
+		rc = put_new(release, keys, what, release_file, file);
 	return rc < 0 ? rc : put_timestamp(release, keys, next, version, file, life_s);
 }
 
@@ -201,30 +221,6 @@ int release_tuf_write(const char *release, const char *keys_folder,
 		rc = put_all(release, keys, what, buffer_bytes(&release_file), timestamp_life_s,
 			     &file);
 	buffer_finish(&release_file);
-	buffer_finish(&file);
-	return rc;
-}
-
-int release_tuf_renew(const char *release, const struct publisher_keys *keys,
-		      int64_t timestamp_life_s)
-{
-	struct buffer file;
-	uint32_t snapshot, next;
-	char name[64];
-	int rc;
-
-	buffer_init(&file, FILE_BYTES_MAX);
-	next = next_timestamp(release, &file, &snapshot);
-	if (snapshot == 0) {
-		buffer_finish(&file);
-		return 0;
-	}
-	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".snapshot.json", snapshot);
-	rc = read_file(&file, release, name);
-	if (rc < 0)
-		complain(release, name, rc);
-	else
-		rc = put_timestamp(release, keys, next, snapshot, &file, timestamp_life_s);
 	buffer_finish(&file);
 	return rc;
 }

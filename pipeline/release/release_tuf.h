@@ -11,15 +11,11 @@
 
 #include "pipeline/keys/keys.h"
 
-/* Signs and writes all of it for the release.json that is there, which says what; where the keys'
- * folder has no root for it, nothing, and 0. Errors are logged. */
+/* Brings all of it up to date with the release.json that is there, which says what: signs a new
+ * timestamp, and the other files where they are of another release. Where the keys' folder has no
+ * root for it, does nothing and returns 0. Errors are logged. */
 must_check int release_tuf_write(const char *release, const char *keys_folder,
 				 const struct publisher_keys *keys, const struct release *what,
-				 int64_t timestamp_life_s);
-
-/* Signs a new timestamp for the snapshot that the present one names; where there is none, nothing,
- * and 0. Errors are logged. */
-must_check int release_tuf_renew(const char *release, const struct publisher_keys *keys,
 				 int64_t timestamp_life_s);
 
 #endif

@@ -31,12 +31,20 @@ ours "${download[@]}" || fail "our client does not get the release"
 cmp "$work/ours/targets/release.json" "$release/release.json" || fail "our client got another release"
 
 # ---- renewed, and published again
+cp -a "$release/tuf" "$work/tuf1"
 "$content" publish "$work/content" --out "$release" --keys "$keys" >"$work/log" 2>&1 || { cat "$work/log"; fail renew; }
 grep -q '"version":2' "$release/tuf/timestamp.json" || fail "the timestamp was not signed anew"
 [ ! -e "$release/tuf/2.targets.json" ] || fail "nothing changed, and there are new targets"
 "$content" publish "$work/content" --out "$release" --keys "$keys" --comment again >"$work/log" 2>&1 || fail publish
 ours "${download[@]}" || fail "our client does not follow"
 cmp "$work/ours/targets/release.json" "$release/release.json" || fail "our client has the release before"
+
+# ---- a publisher that was killed before it had signed this form: the next one does
+rm -rf "$release/tuf"
+cp -a "$work/tuf1" "$release/tuf"
+! "$content" verify "$release" >"$work/log" 2>&1 || fail "verify takes the release before"
+"$content" publish "$work/content" --out "$release" --keys "$keys" >"$work/log" 2>&1 || { cat "$work/log"; fail renew; }
+"$content" verify "$release" >"$work/log" 2>&1 || { cat "$work/log"; fail "what was left half signed stays so"; }
 
 # ---- what verify finds
 cp "$release/tuf/2.targets.json" "$work/aside"
