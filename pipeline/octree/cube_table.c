@@ -17,13 +17,25 @@ uint8_t cube_edge_corner(int edge)
 	return (uint8_t)((i & 1) << (axis + 1) % 3 | (i >> 1) << (axis + 2) % 3);
 }
 
-/* Returns the edge between two corners that differ in one bit. */
-static int edge_between(int a, int b)
+int cube_edge_between(int a, int b)
 {
 	const int bit = a ^ b, axis = bit == 1 ? 0 : bit == 2 ? 1 : 2;
 	const int low = a & b;
 
 	return 4 * axis + (low >> (axis + 1) % 3 & 1) + 2 * (low >> (axis + 2) % 3 & 1);
+}
+
+void cube_face_corners(int corners[4], int axis, int side)
+{
+	static const uint8_t round[4] = { 0, 1, 3, 2 };
+
+	for (int i = 0; i < 4; i++) {
+		/* the two axes of the face, so that going round is counter-clockwise at side 1 */
+		const int at = round[side ? i : 3 - i];
+
+		corners[i] =
+			(at & 1) << (axis + 1) % 3 | (at >> 1) << (axis + 2) % 3 | side << axis;
+	}
 }
 
 int cube_edges_share_face(int a, int b)
@@ -43,16 +55,9 @@ int cube_edges_share_face(int a, int b)
  * the edge where it is left, going round counter-clockwise seen from outside the cube. */
 static void join_face(uint8_t next[CUBE_EDGES], int inside, int axis, int side)
 {
-	static const uint8_t round[4] = { 0, 1, 3, 2 };
 	int corners[4];
 
-	for (int i = 0; i < 4; i++) {
-		/* the two axes of the face, so that going round is counter-clockwise at side 1 */
-		const int at = round[side ? i : 3 - i];
-
-		corners[i] =
-			(at & 1) << (axis + 1) % 3 | (at >> 1) << (axis + 2) % 3 | side << axis;
-	}
+	cube_face_corners(corners, axis, side);
 	for (int i = 0; i < 4; i++) {
 		int last = i;
 
@@ -60,8 +65,8 @@ static void join_face(uint8_t next[CUBE_EDGES], int inside, int axis, int side)
 			continue;
 		while (inside >> corners[(last + 1) % 4] & 1)
 			last = (last + 1) % 4;
-		next[edge_between(corners[(i + 3) % 4], corners[i])] =
-			(uint8_t)edge_between(corners[last], corners[(last + 1) % 4]);
+		next[cube_edge_between(corners[(i + 3) % 4], corners[i])] =
+			(uint8_t)cube_edge_between(corners[last], corners[(last + 1) % 4]);
 	}
 }
 

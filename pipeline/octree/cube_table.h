@@ -25,6 +25,11 @@ struct cube_case {
 const struct cube_case *cube_case_of(uint8_t inside);
 /* Returns the lower corner of an edge; the upper one is that plus 1 << (edge / 4). */
 uint8_t cube_edge_corner(int edge);
+/* Returns the edge between two corners that differ along one axis. */
+int cube_edge_between(int a, int b);
+/* Sets the corners of the face on side 0 or 1 of an axis, in counter-clockwise order seen from
+ * outside. */
+void cube_face_corners(int corners[4], int axis, int side);
 /* Returns whether two edges belong to one face. */
 int cube_edges_share_face(int a, int b);
 

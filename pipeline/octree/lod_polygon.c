@@ -53,18 +53,11 @@ static void join_ring(struct joining *joining, const struct ring *ring, int face
 	}
 }
 
-static int edge_between(int a, int b)
-{
-	const int bit = a ^ b, axis = bit == 1 ? 0 : bit == 2 ? 1 : 2, low = a & b;
-
-	return 4 * axis + (low >> (axis + 1) % 3 & 1) + 2 * (low >> (axis + 2) % 3 & 1);
-}
-
 /* Adds a corner and what follows it up to the next one. */
 static void add_side(struct ring *ring, const struct lod_tree *tree, const struct lod_node *node,
 		     int corner, int next, bool is_split)
 {
-	const int edge = edge_between(corner, next);
+	const int edge = cube_edge_between(corner, next);
 	const bool inside = node->inside >> corner & 1;
 	const struct lod_node *first, *second;
 	bool middle = inside;
@@ -87,22 +80,15 @@ static void add_side(struct ring *ring, const struct lod_tree *tree, const struc
 static void join_face(struct joining *joining, const struct lod_node *node, int face,
 		      uint32_t opened)
 {
-	static const uint8_t round[4] = { 0, 1, 3, 2 };
-	const int axis = face / 2, side = face % 2;
 	struct ring ring = { 0 };
 	int corners[4];
 
-	for (int i = 0; i < 4; i++) {
-		const int at = round[side ? i : 3 - i];
-
-		corners[i] =
-			(at & 1) << (axis + 1) % 3 | (at >> 1) << (axis + 2) % 3 | side << axis;
-	}
+	cube_face_corners(corners, face / 2, face % 2);
 	for (int i = 0; i < 4; i++) {
 		const int next = corners[(i + 1) % 4];
 
 		add_side(&ring, joining->tree, node, corners[i], next,
-			 node->edge_split[edge_between(corners[i], next)] < opened);
+			 node->edge_split[cube_edge_between(corners[i], next)] < opened);
 	}
 	join_ring(joining, &ring, face);
 }
