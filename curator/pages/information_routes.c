@@ -42,7 +42,7 @@ static void save(struct site *site, const struct api_request *request,
 	int rc;
 
 	buffer_init(&text, PARTS_FILE_BYTES_MAX);
-	rc = parts_file_print(parts, &text);
+	rc = json_print(parts->root, &text);
 	changes[0] = (struct document_change){ .name = PARTS_FILE,
 					       .text = buffer_bytes(&text),
 					       .base = parts->tag };

@@ -163,7 +163,7 @@ static int write_page(struct page_save *save, const struct parts_file *parts, cJ
 
 	buffer_init(&text, PARTS_FILE_BYTES_MAX);
 	if (rc > 0)
-		rc = parts_file_print(parts, &text);
+		rc = json_print(parts->root, &text);
 	changes[1].text = buffer_bytes(&text);
 	snprintf(what, sizeof(what), "page of %s in %s%s", api_parameter(save->request, "id"),
 		 api_parameter(save->request, "language"),

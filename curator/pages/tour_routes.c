@@ -15,18 +15,6 @@
 
 enum { TOURS_BYTES_MAX = 1 << 20 };
 
-static int put_json(struct buffer *out, const cJSON *json)
-{
-	char *text = cJSON_Print(json);
-
-	if (!text)
-		return -ENOMEM;
-	buffer_put_text(out, text);
-	buffer_put_u8(out, '\n');
-	cJSON_free(text);
-	return out->error;
-}
-
 /* Reads the file as a tree; an empty one if there is none, with "" as tag. *out is owned by the
  * caller; NULL on failure, with a diagnostic. */
 static int read_tours(struct site *site, cJSON **out, char tag[DOCUMENT_TAG_BYTES],
@@ -174,7 +162,7 @@ static void save_tours(struct tours_save *save, cJSON *tours)
 	if (rc < 0 && !mine)
 		cJSON_Delete(tours);
 	if (rc == 0)
-		rc = put_json(&save->text, mine);
+		rc = json_print(mine, &save->text);
 	if (rc == 0 && meet_others(save, root, tag) == 0) {
 		change.text = buffer_bytes(save->is_merged ? &save->merged : &save->text);
 		rc = content_save(save->site, &change, 1, save->request->caller.name,
@@ -220,7 +208,7 @@ static void post_flight(void *user, const struct api_request *request,
 	if (read_body(request, response, &json) < 0)
 		return;
 	buffer_init(&text, TOURS_BYTES_MAX);
-	rc = put_json(&text, json);
+	rc = json_print(json, &text);
 	if (rc == 0)
 		rc = tour_flight(&flight, user, api_parameter(request, "id"), buffer_bytes(&text),
 				 &diagnostics);

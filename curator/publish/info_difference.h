@@ -8,12 +8,14 @@
 
 struct cJSON;
 
-/* Adds to *json:
+/* Adds to *json lists of what differs, one each for parts, cards, pages, sounds, pictures and
+ * tours:
+ * [{"key", "title", "change"}]. change is added, changed or removed; the key of a card, page or
+ * sound is "PART.LANGUAGE".
  *
- *   parts, cards, pages, sounds, pictures, tours   [{"key", "title", "change"}], change being
- * added, changed or removed; the key of a card, page or sound is "PART.LANGUAGE" picture_bytes   of
- * pictures that are added or changed sound_bytes     the same of spoken texts; missing if there are
- * none languages       [{"code", "titles", "pages"}]: how many are missing
+ * Also picture_bytes, those of pictures that are added or changed; sound_bytes, the same of spoken
+ * texts, if there are any; and languages, [{"code", "titles", "pages"}]: how many are missing in
+ * each.
  *
  * before empty: there was no release. Both are images that gopura-content made. -EBADMSG: one is
  * not; -ENOMEM. */

@@ -218,7 +218,7 @@ static int save_part(const struct site *site, const struct parts_file *parts,
 	rc = write_faces(site, set, (uint32_t)scan, &faces, diagnostics);
 	if (rc == 0 && !change_part(site, parts, (uint32_t)scan, name, save))
 		rc = fail(diagnostics, -ENOMEM, PARTS_FILE);
-	if (rc == 0 && (rc = parts_file_print(parts, &text)) < 0)
+	if (rc == 0 && (rc = json_print(parts->root, &text)) < 0)
 		fail(diagnostics, rc, PARTS_FILE);
 	changes[0].text = buffer_bytes(&faces);
 	changes[1].text = buffer_bytes(&text);

@@ -68,9 +68,9 @@ cJSON *parts_file_find(const struct parts_file *parts, const char *id)
 	return NULL;
 }
 
-int parts_file_print(const struct parts_file *parts, struct buffer *out)
+int json_print(const cJSON *json, struct buffer *out)
 {
-	char *text = cJSON_Print(parts->root);
+	char *text = cJSON_Print(json);
 
 	if (!text)
 		return -ENOMEM;
