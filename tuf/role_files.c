@@ -97,7 +97,8 @@ int tuf_open_file(struct tuf_client *client, struct tuf_file *out, const struct 
 	if (rc < 0)
 		tuf_refuse(client, rc, "%s version %" PRIu32 ": %s", role, out->version,
 			   rc == -EKEYREJECTED ? "fewer valid signatures than its threshold"
-					       : "two members of one name, or no whole number");
+			   : rc == -EBADMSG    ? "two members of one name, or no whole number"
+					       : strerror(-rc));
 	return rc;
 }
 

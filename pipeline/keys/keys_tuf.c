@@ -88,8 +88,11 @@ int keys_make_tuf_root(const char *folder, const struct publisher_keys *keys)
 	int rc;
 
 	buffer_init(&file, ROOT_BYTES_MAX);
+	snprintf(path, sizeof(path), "%s/tuf/1.root.json", folder);
 	rc = keys_read_tuf_root(&file, folder, 1);
 	buffer_finish(&file);
+	if (rc < 0 && rc != -ENOENT)
+		log_error("pipeline", "%s: %s", path, strerror(-rc));
 	if (rc != -ENOENT)
 		return rc;
 	rc = keys_read_root_key(&root, folder);
@@ -108,6 +111,8 @@ int keys_make_tuf_root(const char *folder, const struct publisher_keys *keys)
 	snprintf(path, sizeof(path), "%s/tuf/1.root.json", folder);
 	if (rc == 0)
 		rc = write_root(path, signers, keys->trust.expires_s);
+	if (rc == 0)
+		rc = keys_sync_folder(folder);
 	sodium_memzero(&root, sizeof(root));
 	sodium_memzero(signers, sizeof(signers));
 	return rc;
