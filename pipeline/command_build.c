@@ -131,12 +131,11 @@ static int run(const char *folder, const struct build_options *options,
 		rc = check_budget(&content, options);
 	if (rc == 0)
 		rc = build_content(&report, &content, options);
-	if (rc == 0)
+	if (rc == 0) {
 		print_report(&report);
-	if (rc == 0)
 		print_budget(&report.publish.budget, content.budget_bytes,
 			     report.publish.release_bytes);
-	else
+	} else {
 		fprintf(stderr,
 			"gopura-content build: %s: %s; correct that and run it again; it "
 			"continues where it stopped\n",
@@ -144,6 +143,7 @@ static int run(const char *folder, const struct build_options *options,
 			rc == -EINVAL  ? "the content has faults"
 			: rc == -E2BIG ? "it does not fit"
 				       : strerror(-rc));
+	}
 	if (lock >= 0)
 		close(lock);
 	content_release(&content);

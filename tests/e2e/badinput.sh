@@ -1,7 +1,7 @@
 #!/bin/bash
-# Passes malformed and unusual files to every reader that could meet them, readers of scans under sanitizers: each run ends within ten
-# seconds without a crash, and a refusal names the file and the reason. Pictures are also tested as the texture of a
-# scan.
+# Passes malformed and unusual files to every reader that could meet them, readers of scans under sanitizers: each run
+# ends within ten seconds without a crash, and a refusal names the file and the reason. Pictures are also tested as the
+# texture of a scan.
 set -u
 cd "$(dirname "$0")/../.."
 scans=../shared/scans/badinput
