@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "geometry/vec.h"
 
 /* How much a squared difference of colours (0..1 for black to white) lowers a weight. */
 #define COLOUR_WEIGHT 4.0f
@@ -39,11 +40,6 @@ void features_finish(struct features *features)
 }
 
 /* ---- normals */
-
-static float dot3(const float a[3], const float b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static void clear_vertices(struct features *features)
 {
@@ -118,7 +114,7 @@ static void add_edge(struct features *features, uint32_t t, uint32_t a, uint32_t
 				       .sides = { t, other },
 				       .is_open = forth != back };
 	edge->is_sharp = forth != 1 || back != 1 ||
-			 dot3(features->normals[t], features->normals[other]) < epsilon;
+			 vec_dot(features->normals[t], features->normals[other]) < epsilon;
 	if (edge->is_sharp) {
 		add_line(&features->vertices[a], b);
 		add_line(&features->vertices[b], a);
@@ -148,7 +144,7 @@ static void end_normal(float out[3], const struct features *features,
 
 	for (int k = 0; k < 3; k++)
 		out[k] = vertex->line_count > 0 ? left[k] + right[k] : vertex->sum[k];
-	length = vertex->line_count > 0 ? sqrtf(dot3(out, out)) : vertex->area;
+	length = vertex->line_count > 0 ? vec_length(out) : vertex->area;
 	for (int k = 0; length > 0.0f && k < 3; k++)
 		out[k] /= length;
 }
@@ -159,8 +155,8 @@ static void weigh_edge(struct features *features, struct feature_edge *edge, flo
 
 	end_normal(a, features, edge, 0);
 	end_normal(b, features, edge, 1);
-	edge->weight =
-		dot3(a, b) - COLOUR_WEIGHT * colour_square(features, edge->ends[0], edge->ends[1]);
+	edge->weight = vec_dot(a, b) -
+		       COLOUR_WEIGHT * colour_square(features, edge->ends[0], edge->ends[1]);
 	for (int end = 0; edge->weight < epsilon && end < 2; end++) {
 		struct feature_vertex *vertex = &features->vertices[edge->ends[end]];
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geometry/vec.h"
 #include "pipeline/hierarchy/feature_edges.h"
 
 #define FOLD_COSINE   0.2   /* minimum cosine between a triangle's normals before and after */
@@ -72,11 +73,7 @@ static double weight_of(const struct work *work, const struct feature_edge *edge
 /* How flat the surface is around a vertex, 1: quite flat. */
 static float flatness(const struct feature_vertex *vertex)
 {
-	const float *sum = vertex->sum;
-
-	return vertex->area > 0.0f
-		       ? sqrtf(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / vertex->area
-		       : 0.0f;
+	return vertex->area > 0.0f ? vec_length(vertex->sum) / vertex->area : 0.0f;
 }
 
 static float squared_length(const struct work *work, const struct feature_edge *edge)

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "pipeline/hierarchy/quadric.h"
+#include "pipeline/hierarchy/collapse.h"
 
 enum { SHARE = 6 /* a round removes at most one in so many vertices */ };
 /* A triangle that turns by more than about 75 degrees in one collapse counts as folded over. */
@@ -49,17 +49,11 @@ static void position_of(double out[3], const struct work *work, uint32_t vertex)
 		out[i] = work->vertices[vertex].position[i];
 }
 
+/* Sets out to the normal of a triangle, and returns its length: twice the area. */
 static double cross_of(double out[3], const double a[3], const double b[3], const double c[3])
 {
-	double u[3], v[3];
-
-	for (int i = 0; i < 3; i++) {
-		u[i] = b[i] - a[i];
-		v[i] = c[i] - a[i];
-	}
-	for (int i = 0; i < 3; i++)
-		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
-	return sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
+	collapse_cross(out, a, b, c);
+	return sqrt(collapse_dot(out, out));
 }
 
 static bool get_link(struct link *link, const struct work *work, uint32_t vertex)
@@ -169,8 +163,8 @@ static bool folds(const struct work *work, uint32_t gone, uint32_t target)
 		new_length = cross_of(new, to, b, c);
 		if (old_length == 0.0)
 			continue;
-		if (new_length == 0.0 || old[0] * new[0] + old[1] * new[1] + old[2] * new[2] <
-						 TURN_COS * old_length *new_length)
+		if (new_length == 0.0 ||
+		    collapse_dot(old, new) < TURN_COS * old_length * new_length)
 			return true;
 	}
 	return false;
