@@ -160,4 +160,33 @@ static inline struct mesh subject_ring(uint32_t n)
 	return mesh;
 }
 
+/* What a group promises to its neighbours: border edges as they were, ends and all. */
+struct subject_border {
+	uint64_t *edges;
+	uint32_t count;
+};
+
+/* Locks the border as it is between two groups: locked, and no border of the scan. */
+static inline void subject_lock_border(struct subject *subject, struct subject_border *out)
+{
+	for (uint32_t v = 0; v < subject->surface.vertex_count; v++) {
+		subject->surface.locked[v] = subject->surface.vertices[v].border;
+		subject->surface.vertices[v].border = 0;
+	}
+	out->count = subject_open_edges(&out->edges, &subject->surface);
+	CHECK(out->count > 160);
+}
+
+/* Checks that it is still there, and frees it. */
+static inline void subject_check_border(const struct subject *subject,
+					struct subject_border *border)
+{
+	uint64_t *now;
+
+	CHECK(subject_open_edges(&now, &subject->surface) == border->count);
+	CHECK(memcmp(border->edges, now, border->count * sizeof(*now)) == 0);
+	free(border->edges);
+	free(now);
+}
+
 #endif

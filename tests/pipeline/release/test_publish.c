@@ -6,9 +6,8 @@
 
 #include "base/clock.h"
 #include "pipeline/release/verify.h"
-#include "tests/pipeline/release/tiny_release.h"
+#include "tests/pipeline/release/tiny_fixture.h"
 
-static struct tiny tiny;
 static struct verify_report verified;
 
 static int syncs_left = -1; /* before the disk is full; -1: it never is */
@@ -24,20 +23,6 @@ int __wrap_fsync(int fd)
 	}
 	syncs_left -= syncs_left > 0;
 	return __real_fsync(fd);
-}
-
-static int set_up(void **state)
-{
-	(void)state;
-	tiny_make(&tiny);
-	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	tiny_remove(&tiny);
-	return 0;
 }
 
 static int verify_at(int64_t now_s)

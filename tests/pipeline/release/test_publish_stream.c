@@ -7,24 +7,9 @@
 
 #include "format/stream_page.h"
 #include "pipeline/release/verify.h"
-#include "tests/pipeline/release/tiny_release.h"
+#include "tests/pipeline/release/tiny_fixture.h"
 
-static struct tiny tiny;
 static struct verify_report verified;
-
-static int set_up(void **state)
-{
-	(void)state;
-	tiny_make(&tiny);
-	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	tiny_remove(&tiny);
-	return 0;
-}
 
 enum { SIDE = 41, PLACES = SIDE * SIDE, TILES = 2 * (SIDE - 1) * (SIDE - 1) };
 

@@ -7,24 +7,9 @@
 #include <sqlite3.h>
 
 #include "format/article_builder.h"
-#include "tests/pipeline/release/tiny_release.h"
+#include "tests/pipeline/release/tiny_fixture.h"
 
-static struct tiny tiny;
 static struct verify_report verified;
-
-static int set_up(void **state)
-{
-	(void)state;
-	tiny_make(&tiny);
-	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	tiny_remove(&tiny);
-	return 0;
-}
 
 /* Adds the database of an information page with all its pages replaced. */
 static void add_database(struct object_store *objects, struct bytes database, struct bytes body,

@@ -7,24 +7,9 @@
 #include <errno.h>
 
 #include "format/label.h"
-#include "tests/pipeline/release/tiny_release.h"
+#include "tests/pipeline/release/tiny_fixture.h"
 
-static struct tiny tiny;
 static struct verify_report verified;
-
-static int set_up(void **state)
-{
-	(void)state;
-	tiny_make(&tiny);
-	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	tiny_remove(&tiny);
-	return 0;
-}
 
 /* All triangles of a patch belong to the part. */
 static void add_labels(struct object_store *objects, const char *part, uint32_t triangles,
