@@ -259,7 +259,7 @@ static const double
 	/* with a budget, bytes of a tile at its lowest quality, at its best one, and at all five
 	 * together, to those at the one that the trial encodes, which is budget_quality */
 	choice_least = 0.43, choice_most = 1.9, choice_all = 4.6,
-	/* processor time of encoding five to that of one */
+	/* processor time of encoding five to that of one; not measured */
 	choice_time = 5,
 	/* bytes of the objects of all groups, for each triangle of the scan */
 	master_bytes = 4.2,
