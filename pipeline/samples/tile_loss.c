@@ -10,7 +10,7 @@ static int64_t brightness(const uint8_t *pixel)
 	return 299 * pixel[0] + 587 * pixel[1] + 114 * pixel[2];
 }
 
-static double window_ssim(const uint8_t *a, const uint8_t *b, uint32_t x0, uint32_t y0)
+double tile_window_ssim(const uint8_t *a, const uint8_t *b, uint32_t x0, uint32_t y0)
 {
 	const double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
 	const double n = TILE_WINDOW_PX * TILE_WINDOW_PX;
@@ -46,8 +46,8 @@ uint32_t tile_loss(const uint8_t *rgb, const uint8_t *decoded, const uint8_t cov
 
 		if (!covered[w])
 			continue;
-		ssim = window_ssim(rgb, decoded, w % TILE_WINDOW_SIDE * TILE_WINDOW_PX,
-				   w / TILE_WINDOW_SIDE * TILE_WINDOW_PX);
+		ssim = tile_window_ssim(rgb, decoded, w % TILE_WINDOW_SIDE * TILE_WINDOW_PX,
+					w / TILE_WINDOW_SIDE * TILE_WINDOW_PX);
 		loss += (uint32_t)lrint(fmin(fmax(1 - ssim, 0), 1) * TILE_LOSS_WINDOW);
 	}
 	return loss;

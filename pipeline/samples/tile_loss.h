@@ -14,6 +14,10 @@ enum {
 	TILE_LOSS_WINDOW = 1000000 /* the loss of a window that has nothing of the original */
 };
 
+/* Returns the SSIM of brightness, at most 1, of the window whose first pixel that is. a and b:
+ * SAMPLE_IMAGE_PX squared pixels of 3 bytes. */
+double tile_window_ssim(const uint8_t *a, const uint8_t *b, uint32_t x0, uint32_t y0);
+
 /* Returns the sum over windows of 1 - SSIM of brightness, in millionths. rgb and decoded:
  * SAMPLE_IMAGE_PX squared pixels of 3 bytes. covered: for each window, whether it counts. */
 uint32_t tile_loss(const uint8_t *rgb, const uint8_t *decoded, const uint8_t covered[TILE_WINDOWS]);

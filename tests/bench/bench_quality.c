@@ -19,6 +19,7 @@
 #include "pipeline/samples/pyramid.h"
 #include "pipeline/samples/resolve.h"
 #include "pipeline/samples/scale_space.h"
+#include "pipeline/samples/tile_loss.h"
 #include "pipeline/samples/tile_quality.h"
 
 enum {
@@ -31,7 +32,7 @@ enum {
 	WORST = 20,
 	BEST = 97,
 	SCALES = 5,
-	WINDOW = 8
+	WINDOW = TILE_WINDOW_PX,
 };
 
 static const struct scale_space_options scale_options = { SCALES, { 1, 2, 4, 8, 16 }, 0.004f };
@@ -56,29 +57,6 @@ static void check(int rc, const char *doing)
 
 /* ---- tiles */
 
-static double luma(const uint8_t *p)
-{
-	return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
-}
-
-/* SSIM after Wang et al. 2004. */
-static double window_ssim(const uint8_t *a, const uint8_t *b, uint32_t x0, uint32_t y0)
-{
-	const double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
-	const double n = WINDOW * WINDOW;
-	double sa = 0, sb = 0, saa = 0, sbb = 0, sab = 0;
-
-	for (uint32_t i = 0; i < WINDOW * WINDOW; i++) {
-		size_t at = 3 * ((size_t)(y0 + i / WINDOW) * SAMPLE_IMAGE_PX + x0 + i % WINDOW);
-		double u = luma(a + at), v = luma(b + at);
-
-		sa += u, sb += v, saa += u * u, sbb += v * v, sab += u * v;
-	}
-	sa /= n, sb /= n;
-	return (2 * sa * sb + c1) * (2 * (sab / n - sa * sb) + c2) /
-	       ((sa * sa + sb * sb + c1) * (saa / n - sa * sa + sbb / n - sb * sb + c2));
-}
-
 static struct trial measure(const uint8_t *rgb, const bool *covered, int quality)
 {
 	static uint8_t decoded[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
@@ -99,7 +77,7 @@ static struct trial measure(const uint8_t *rgb, const bool *covered, int quality
 	for (uint32_t y = 0; y < SAMPLE_IMAGE_PX; y += WINDOW)
 		for (uint32_t x = 0; x < SAMPLE_IMAGE_PX; x += WINDOW)
 			if (covered[(y + WINDOW / 2) * SAMPLE_IMAGE_PX + x + WINDOW / 2])
-				trial.ssim += window_ssim(rgb, decoded, x, y);
+				trial.ssim += tile_window_ssim(rgb, decoded, x, y);
 	return trial;
 }
 
