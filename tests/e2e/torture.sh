@@ -21,18 +21,21 @@ cp -a "$work/release" "$work/reference"
 printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n' >"$work/gopura.conf"
 cp "$work/keys/root/1.json" "$work/"
 
-# use NAME: one use of a program, from a fresh state
+# use NAME SETTING...: one use of a program, from a fresh state, with these settings of the shim for the program alone
 use() {
-	case $1 in
-	keys) exec "$content" keys "$work/content" --keys "$work/new" ;;
-	temple) exec "$content" temple --triangles 10000 --out "$work/new.ply" ;;
-	inspect) exec "$content" inspect "$work/release" ;;
-	verify) exec "$content" verify "$work/release" ;;
-	import) exec "$content" import "$work/content/temple.ply" ;;
-	publish) exec "$content" publish "$work/content" --out "$work/release" --keys "$work/keys" --comment "$RANDOM" ;;
-	build) exec "$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 ;;
-	setup) exec build/gopura-setup --check "$work/gopura.conf" ;;
+	local name=$1 command
+	shift
+	case $name in
+	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
+	temple) command=("$content" temple --triangles 10000 --out "$work/new.ply") ;;
+	inspect) command=("$content" inspect "$work/release") ;;
+	verify) command=("$content" verify "$work/release") ;;
+	import) command=("$content" import "$work/content/temple.ply") ;;
+	publish) command=("$content" publish "$work/content" --out "$work/release" --keys "$work/keys" --comment "$RANDOM") ;;
+	build) command=("$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1) ;;
+	setup) command=(build/gopura-setup --check "$work/gopura.conf") ;;
 	esac
+	timeout -k 5 120 env "$@" LD_PRELOAD="$shim" "${command[@]}" >"$work/said" 2>&1
 }
 # prepare NAME: what a use begins with
 prepare() {
@@ -50,10 +53,7 @@ fault() { faults=$((faults + 1)); echo "  FAULT $*"; sed 's/^/        /' "$work/
 strain() {
 	local status=0
 	prepare "$1"
-	(
-		export FAIL_KIND=$2 FAIL_ERRNO=$3 FAIL_AT=$4 LD_PRELOAD=$shim
-		use "$1"
-	) >"$work/said" 2>&1 || status=$?
+	use "$1" FAIL_KIND="$2" FAIL_ERRNO="$3" FAIL_AT="$4" || status=$?
 	runs=$((runs + 1))
 	[ "$status" != 0 ] || survived=$((survived + 1))
 	[ "$status" -le 3 ] || fault "$1: $2 call $4 (errno $3) ended it with status $status"
@@ -72,10 +72,7 @@ all() {
 	local calls step n
 	prepare "$1"
 	rm -f "$work/count"
-	(
-		export FAIL_KIND=$2 FAIL_COUNT=$work/count LD_PRELOAD=$shim
-		use "$1"
-	) >"$work/said" 2>&1 || fault "$1 fails without a failing call"
+	use "$1" FAIL_KIND="$2" FAIL_COUNT="$work/count" || fault "$1 fails without a failing call"
 	calls=$(sort -n "$work/count" | tail -n 1)
 	step=1
 	[ "$samples" = 0 ] || step=$(((calls + samples - 1) / samples))
