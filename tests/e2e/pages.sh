@@ -18,6 +18,7 @@ done
 curator=
 trap '[ -z "$curator" ] || kill -9 $curator 2>/dev/null || true' EXIT
 start() {
+	rm -f "$work/curator.log" # else the address of the one before may be found in it
 	build/gopura-curator "$content" --port 0 >"$work/curator.log" 2>&1 &
 	curator=$!
 	wait_for 60 "address" grep -q 'open http://127.0.0.1:' "$work/curator.log"
@@ -32,9 +33,9 @@ python3 tests/e2e/pages.py "$port" check || { tail "$work/curator.log"; fail "wr
 
 # ---- killed while it saves
 for _ in 1 2 3 4; do
-	python3 tests/e2e/pages.py "$port" save "$work/counter" 2>/dev/null &
+	python3 tests/e2e/pages.py "$port" save "$work/counter" 2>"$work/saver.log" &
 	saver=$!
-	wait_for 60 "saves" test -s "$work/counter"
+	(wait_for 60 "saves" test -s "$work/counter") || { tail "$work/saver.log" "$work/curator.log"; exit 1; }
 	sleep "0.$((RANDOM % 9))"
 	kill -9 "$curator"
 	wait "$curator" "$saver" 2>/dev/null || true
