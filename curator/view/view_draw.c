@@ -6,14 +6,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
+#include "base/parallel.h"
 #include "geometry/vec.h"
 #include "pipeline/samples/raster.h"
 #include "pipeline/samples/sight.h"
 
+/* Pieces are drawn so many at a time: while they are loaded one after the other, nothing draws, and
+ * those of a batch do not hide each other. */
+enum { BATCH_PIECES = 128, ROWS_AT_ONCE = 8 };
+
+/* Copies of the triangles of pieces, since a model lends those of one piece at a time. */
+struct batch {
+	struct model_mesh meshes[BATCH_PIECES]; /* vertices and indices are set when it is drawn */
+	uint32_t count;
+	struct model_vertex *vertices; /* owned; as the next, of one mesh after the other */
+	uint16_t *indices;
+	uint32_t vertex_count, vertex_room, index_count, index_room;
+};
+
 struct view_draw {
 	struct model *model;                              /* borrowed */
 	uint32_t width_px, height_px, side_px, left, top; /* where the view is in the square */
-	struct raster *raster;                            /* owned, as all below */
+	uint32_t threads;
+	struct batch batch;
+	struct raster *raster; /* owned, as all below */
 	uint8_t (*colours)[3];
 	int8_t (*normals)[3];
 	uint8_t *open;
@@ -42,6 +59,7 @@ int view_draw_create(struct view_draw **out, struct model *model, uint32_t width
 	draw->normals = malloc(pixels * sizeof(*draw->normals));
 	draw->open = malloc(pixels);
 	draw->inverse_m = malloc(pixels * sizeof(*draw->inverse_m));
+	draw->threads = parallel_cores() > 1 ? 2 : 1;
 	rc = raster_create(&draw->raster, draw->side_px, true);
 	if (rc == 0)
 		rc = sight_create(&draw->sight, model);
@@ -63,7 +81,50 @@ void view_draw_destroy(struct view_draw *draw)
 	free(draw->open);
 	free(draw->inverse_m);
 	sight_destroy(draw->sight);
+	free(draw->batch.vertices);
+	free(draw->batch.indices);
 	free(draw);
+}
+
+/* ---- pieces, a batch at a time */
+
+static int add_to_batch(struct batch *batch, const struct model_mesh *mesh)
+{
+	int rc = ARRAY_RESERVE(batch->vertices, batch->vertex_room,
+			       (uint64_t)batch->vertex_count + mesh->vertex_count, UINT32_MAX);
+
+	if (rc == 0)
+		rc = ARRAY_RESERVE(batch->indices, batch->index_room,
+				   (uint64_t)batch->index_count + mesh->index_count, UINT32_MAX);
+	if (rc < 0)
+		return rc;
+	memcpy(batch->vertices + batch->vertex_count, mesh->vertices,
+	       mesh->vertex_count * sizeof(*mesh->vertices));
+	memcpy(batch->indices + batch->index_count, mesh->indices,
+	       mesh->index_count * sizeof(*mesh->indices));
+	batch->vertex_count += mesh->vertex_count;
+	batch->index_count += mesh->index_count;
+	batch->meshes[batch->count++] = (struct model_mesh){ .vertex_count = mesh->vertex_count,
+							     .index_count = mesh->index_count };
+	return 0;
+}
+
+static int draw_batch(struct view_draw *draw)
+{
+	struct batch *batch = &draw->batch;
+	const struct model_vertex *vertices = batch->vertices;
+	const uint16_t *indices = batch->indices;
+	int rc;
+
+	for (uint32_t i = 0; i < batch->count; i++) {
+		batch->meshes[i].vertices = vertices;
+		batch->meshes[i].indices = indices;
+		vertices += batch->meshes[i].vertex_count;
+		indices += batch->meshes[i].index_count;
+	}
+	rc = raster_draw_meshes(draw->raster, batch->meshes, batch->count, draw->threads);
+	batch->count = batch->vertex_count = batch->index_count = 0;
+	return rc;
 }
 
 /* What the view shows, which is less than the square. From near to far, so that what is hidden is
@@ -74,24 +135,26 @@ static int draw_pieces(struct view_draw *draw, const struct camera *view,
 	const uint32_t *pieces;
 	uint32_t count;
 	float matrix[16];
+	int rc = 0;
 
 	camera_matrix(view, matrix);
 	sight_look(draw->sight, square->eye_m, detail_px / camera_px_per_radian(square));
 	pieces = sight_visible(draw->sight, matrix, square->eye_m, &count);
 	raster_begin(draw->raster, square);
-	for (uint32_t n = 0; n < count; n++) {
+	draw->batch.count = draw->batch.vertex_count = draw->batch.index_count = 0;
+	for (uint32_t n = 0; n < count && rc == 0; n++) {
 		const struct model_piece *piece = &draw->model->pieces[pieces[n]];
 		struct model_mesh mesh;
-		int rc;
 
 		if (raster_hides(draw->raster, piece->low_m, piece->high_m))
 			continue;
 		rc = model_load(draw->model, pieces[n], &mesh);
-		if (rc < 0)
-			return rc;
-		raster_draw(draw->raster, &mesh);
+		if (rc == 0)
+			rc = add_to_batch(&draw->batch, &mesh);
+		if (rc == 0 && draw->batch.count == BATCH_PIECES)
+			rc = draw_batch(draw);
 	}
-	return 0;
+	return rc == 0 ? draw_batch(draw) : rc;
 }
 
 /* ---- out of the blocks */
@@ -130,6 +193,17 @@ static void copy_block(struct view_draw *draw, uint32_t column, uint32_t row)
 	}
 }
 
+static int copy_rows(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	struct view_draw *draw = user;
+
+	(void)worker;
+	for (uint32_t row = first; row < after; row++)
+		for (uint32_t column = 0; column < draw->side_px / RASTER_BLOCK_PX; column++)
+			copy_block(draw, column, row);
+	return 0;
+}
+
 int view_draw_image(struct view_draw *draw, const struct camera *camera, float detail_px,
 		    struct view_image *out)
 {
@@ -149,9 +223,9 @@ int view_draw_image(struct view_draw *draw, const struct camera *camera, float d
 	memset(draw->colours, 0, pixels * sizeof(*draw->colours));
 	memset(draw->normals, 0, pixels * sizeof(*draw->normals));
 	memset(draw->open, 0, pixels);
-	for (uint32_t row = 0; row < blocks; row++)
-		for (uint32_t column = 0; column < blocks; column++)
-			copy_block(draw, column, row);
+	rc = parallel_ranges(draw->threads, blocks, ROWS_AT_ONCE, copy_rows, draw);
+	if (rc < 0)
+		return rc;
 	*out = (struct view_image){ .width_px = draw->width_px,
 				    .height_px = draw->height_px,
 				    .px_per_radian = camera_px_per_radian(camera),

@@ -7,6 +7,9 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "base/array.h"
+#include "base/parallel.h"
+
 enum {
 	SUBPIXELS = 256, /* places of corners are rounded to this part of a sample */
 	CORNERS_MAX = 65536,
@@ -45,6 +48,21 @@ enum {
  * triangles may have changed it since then. At BLOCK_STALE, `farthest` is found again. */
 enum { BLOCK_EMPTY, BLOCK_KNOWN, BLOCK_STALE = BLOCK_KNOWN + 12 };
 
+/* What raster_draw_meshes keeps between its two steps, and its arrays for the next time. */
+struct crowd {
+	const struct model_mesh *meshes; /* borrowed, while it draws */
+	uint32_t count, threads;
+	struct corner *corners;   /* owned, as all arrays; of all meshes */
+	uint32_t *triangles;      /* numbers within their mesh; of each thread and mesh */
+	struct crowd_part *parts; /* of each mesh */
+	uint32_t corner_room, triangle_room, part_room, triangle_count;
+};
+
+struct crowd_part {
+	uint32_t first_corner, first_triangle;
+	uint32_t counts[RASTER_THREADS_MAX]; /* of triangles, for each thread */
+};
+
 struct raster {
 	uint32_t side_px, side_blocks;
 	float *inverse_m; /* owned, as all arrays; of each block one after the other */
@@ -53,6 +71,7 @@ struct raster {
 	float *farthest;
 	uint8_t *states;
 	struct corner *corners;
+	struct crowd crowd;
 	/* the camera */
 	float eye_m[3], right[3], up[3], forward[3], px_per_radian, near_m;
 };
@@ -105,6 +124,9 @@ void raster_destroy(struct raster *raster)
 	free(raster->farthest);
 	free(raster->states);
 	free(raster->corners);
+	free(raster->crowd.corners);
+	free(raster->crowd.triangles);
+	free(raster->crowd.parts);
 	free(raster);
 }
 
@@ -347,19 +369,41 @@ vector_inline void set_channels(struct triangle *t, const struct corner *const c
 	t->nearest = fmaxf(t->inverse_m[0], fmaxf(t->inverse_m[1], t->inverse_m[2]));
 }
 
-vector_inline void draw_triangle(struct raster *raster, const struct corner *a,
-				 const struct corner *b, const struct corner *c)
+/* Rows of blocks that are drawn: of `every`, a power of two, the one numbered `first`. */
+struct rows {
+	uint32_t first, every;
+};
+
+/* The samples whose middles lie in the bounding box of a triangle. Returns false if none do. */
+struct bounds {
+	int32_t low_x, low_y, high_x, high_y;
+};
+
+vector_inline bool find_bounds(const struct raster *raster, const struct corner *a,
+			       const struct corner *b, const struct corner *c, struct bounds *out)
 {
 	const int32_t half = SUBPIXELS / 2, last = (int32_t)raster->side_px - 1;
-	/* the samples whose middles lie in the bounding box */
-	int32_t low_x = most((least(a->x, least(b->x, c->x)) + half - 1) >> 8, 0);
-	int32_t low_y = most((least(a->y, least(b->y, c->y)) + half - 1) >> 8, 0);
-	int32_t high_x = least((most(a->x, most(b->x, c->x)) - half) >> 8, last);
-	int32_t high_y = least((most(a->y, most(b->y, c->y)) - half) >> 8, last);
+
+	out->low_x = most((least(a->x, least(b->x, c->x)) + half - 1) >> 8, 0);
+	out->low_y = most((least(a->y, least(b->y, c->y)) + half - 1) >> 8, 0);
+	out->high_x = least((most(a->x, most(b->x, c->x)) - half) >> 8, last);
+	out->high_y = least((most(a->y, most(b->y, c->y)) - half) >> 8, last);
+	return out->low_x <= out->high_x && out->low_y <= out->high_y;
+}
+
+vector_inline void draw_triangle(struct raster *raster, struct rows rows, const struct corner *a,
+				 const struct corner *b, const struct corner *c)
+{
+	struct bounds box;
 	struct triangle t;
+	int32_t first_row;
 	int64_t area;
 
-	if (low_x > high_x || low_y > high_y)
+	if (!find_bounds(raster, a, b, c, &box))
+		return;
+	first_row = box.low_y / 8 +
+		    (int32_t)((rows.first - (uint32_t)box.low_y / 8) & (rows.every - 1));
+	if (first_row > box.high_y / 8)
 		return;
 	area = (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(b->y - a->y) * (c->x - a->x);
 	if (area == 0)
@@ -373,10 +417,10 @@ vector_inline void draw_triangle(struct raster *raster, const struct corner *a,
 	set_edge(&t, 1, corners[2], corners[0]);
 	set_edge(&t, 2, corners[0], corners[1]);
 	set_channels(&t, corners, area > 0);
-	for (int32_t row = low_y / 8; row <= high_y / 8; row++) {
-		int from = most(low_y - 8 * row, 0), to = least(high_y - 8 * row, 7);
+	for (int32_t row = first_row; row <= box.high_y / 8; row += (int32_t)rows.every) {
+		int from = most(box.low_y - 8 * row, 0), to = least(box.high_y - 8 * row, 7);
 
-		for (int32_t column = low_x / 8; column <= high_x / 8; column++) {
+		for (int32_t column = box.low_x / 8; column <= box.high_x / 8; column++) {
 			size_t block = (size_t)row * raster->side_blocks + (size_t)column;
 
 			if (raster->states[block] >= BLOCK_STALE)
@@ -430,8 +474,8 @@ static int clip(const struct raster *raster, int plane, const struct seen_corner
 	return kept;
 }
 
-static vector_clones void draw_clipped(struct raster *raster, const struct model_mesh *mesh,
-				       const uint16_t *indices)
+static vector_clones void draw_clipped(struct raster *raster, struct rows rows,
+				       const struct model_mesh *mesh, const uint16_t *indices)
 {
 	struct seen_corner polygons[2][POLYGON_MAX];
 	struct corner corners[POLYGON_MAX];
@@ -452,13 +496,12 @@ static vector_clones void draw_clipped(struct raster *raster, const struct model
 			return;
 	}
 	for (int k = 2; k < count; k++)
-		draw_triangle(raster, &corners[0], &corners[k - 1], &corners[k]);
+		draw_triangle(raster, rows, &corners[0], &corners[k - 1], &corners[k]);
 }
 
-vector_clones void raster_draw(struct raster *raster, const struct model_mesh *mesh)
+vector_inline void place_corners(const struct raster *raster, const struct model_mesh *mesh,
+				 struct corner *corners)
 {
-	struct corner *corners = raster->corners;
-
 	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
 		float seen[3];
 
@@ -466,16 +509,146 @@ vector_clones void raster_draw(struct raster *raster, const struct model_mesh *m
 		corners[i].channels = channels_of(&mesh->vertices[i]);
 		place_corner(raster, &corners[i], seen);
 	}
-	for (uint32_t i = 0; i < mesh->index_count; i += 3) {
-		const uint16_t *indices = mesh->indices + i;
-		const struct corner *a = &corners[indices[0]], *b = &corners[indices[1]],
-				    *c = &corners[indices[2]];
+}
 
-		if (!(a->outside | b->outside | c->outside))
-			draw_triangle(raster, a, b, c);
-		else if (!(a->outside & b->outside & c->outside))
-			draw_clipped(raster, mesh, indices);
+vector_inline void draw_indices(struct raster *raster, struct rows rows,
+				const struct model_mesh *mesh, const struct corner *corners,
+				const uint16_t *indices)
+{
+	const struct corner *a = &corners[indices[0]], *b = &corners[indices[1]],
+			    *c = &corners[indices[2]];
+
+	if (!(a->outside | b->outside | c->outside))
+		draw_triangle(raster, rows, a, b, c);
+	else if (!(a->outside & b->outside & c->outside))
+		draw_clipped(raster, rows, mesh, indices);
+}
+
+vector_clones void raster_draw(struct raster *raster, const struct model_mesh *mesh)
+{
+	place_corners(raster, mesh, raster->corners);
+	for (uint32_t i = 0; i < mesh->index_count; i += 3)
+		draw_indices(raster, (struct rows){ 0, 1 }, mesh, raster->corners,
+			     mesh->indices + i);
+}
+
+/* ---- by several threads
+ *
+ * First each mesh's corners are placed and its triangles given to the threads in whose rows they
+ * are, then each thread draws its own. A thread has every so-manieth row of blocks, so all have
+ * about as much to do wherever the model is in the frame. */
+
+/* Returns a bit for each thread that draws some of the triangle. */
+vector_inline uint32_t threads_of(const struct raster *raster, const struct corner *a,
+				  const struct corner *b, const struct corner *c)
+{
+	const uint32_t threads = raster->crowd.threads;
+	struct bounds box;
+	uint32_t bits = 0;
+
+	if (a->outside & b->outside & c->outside)
+		return 0;
+	if (a->outside | b->outside | c->outside)
+		return (1u << threads) - 1;
+	if (!find_bounds(raster, a, b, c, &box))
+		return 0;
+	for (int32_t row = box.low_y / 8; row <= box.high_y / 8; row++)
+		bits |= 1u << ((uint32_t)row & (threads - 1));
+	return bits;
+}
+
+vector_inline uint32_t *triangles_of(const struct crowd *crowd, uint32_t thread,
+				     const struct crowd_part *part)
+{
+	return crowd->triangles + (size_t)thread * crowd->triangle_count + part->first_triangle;
+}
+
+static vector_clones int give_out(void *user, uint32_t piece, uint32_t worker)
+{
+	const struct raster *raster = user;
+	const struct crowd *crowd = &raster->crowd;
+	const struct model_mesh *mesh = &crowd->meshes[piece];
+	struct crowd_part *part = &crowd->parts[piece];
+	struct corner *corners = crowd->corners + part->first_corner;
+
+	(void)worker;
+	place_corners(raster, mesh, corners);
+	for (uint32_t i = 0; i < mesh->index_count / 3; i++) {
+		const uint16_t *indices = mesh->indices + 3 * (size_t)i;
+		const uint32_t bits = threads_of(raster, &corners[indices[0]], &corners[indices[1]],
+						 &corners[indices[2]]);
+
+		for (uint32_t thread = 0; bits >> thread; thread++)
+			if (bits >> thread & 1)
+				triangles_of(crowd, thread, part)[part->counts[thread]++] = i;
 	}
+	return 0;
+}
+
+static vector_clones int draw_own(void *user, uint32_t thread, uint32_t worker)
+{
+	struct raster *raster = user;
+	const struct crowd *crowd = &raster->crowd;
+
+	(void)worker;
+	for (uint32_t m = 0; m < crowd->count; m++) {
+		const struct crowd_part *part = &crowd->parts[m];
+		const uint32_t *triangles = triangles_of(crowd, thread, part);
+
+		for (uint32_t i = 0; i < part->counts[thread]; i++)
+			draw_indices(raster, (struct rows){ thread, crowd->threads },
+				     &crowd->meshes[m], crowd->corners + part->first_corner,
+				     crowd->meshes[m].indices + 3 * (size_t)triangles[i]);
+	}
+	return 0;
+}
+
+static int make_room(struct crowd *crowd)
+{
+	uint64_t corners = 0, triangles = 0;
+	int rc = ARRAY_RESERVE(crowd->parts, crowd->part_room, crowd->count, UINT32_MAX);
+
+	for (uint32_t m = 0; m < crowd->count && rc == 0; m++) {
+		crowd->parts[m] = (struct crowd_part){ .first_corner = (uint32_t)corners,
+						       .first_triangle = (uint32_t)triangles };
+		corners += crowd->meshes[m].vertex_count;
+		triangles += crowd->meshes[m].index_count / 3;
+	}
+	if (rc == 0)
+		rc = ARRAY_RESERVE(crowd->triangles, crowd->triangle_room,
+				   triangles * crowd->threads, UINT32_MAX);
+	crowd->triangle_count = (uint32_t)triangles;
+	if (rc == 0 && corners > crowd->corner_room) {
+		/* vectors need more than malloc's alignment */
+		free(crowd->corners);
+		crowd->corners = make_array(corners, sizeof(*crowd->corners));
+		crowd->corner_room = crowd->corners ? (uint32_t)corners : 0;
+		rc = crowd->corners ? 0 : -ENOMEM;
+	}
+	return rc;
+}
+
+int raster_draw_meshes(struct raster *raster, const struct model_mesh *meshes, uint32_t count,
+		       uint32_t threads)
+{
+	struct crowd *crowd = &raster->crowd;
+	int rc;
+
+	if (threads == 1) {
+		for (uint32_t m = 0; m < count; m++)
+			raster_draw(raster, &meshes[m]);
+		return 0;
+	}
+	crowd->meshes = meshes;
+	crowd->count = count;
+	crowd->threads = threads;
+	rc = make_room(crowd);
+	if (rc == 0)
+		rc = parallel_run(threads, count, give_out, raster);
+	if (rc == 0)
+		rc = parallel_run(threads, threads, draw_own, raster);
+	crowd->meshes = NULL;
+	return rc == -EFBIG ? -ENOMEM : rc;
 }
 
 /* ---- what is hidden */

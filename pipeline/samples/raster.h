@@ -10,7 +10,11 @@
 #include "geometry/camera.h"
 #include "pipeline/samples/model.h"
 
-enum { RASTER_BLOCK_PX = 8, RASTER_BLOCK_SAMPLES = RASTER_BLOCK_PX * RASTER_BLOCK_PX };
+enum {
+	RASTER_BLOCK_PX = 8,
+	RASTER_BLOCK_SAMPLES = RASTER_BLOCK_PX * RASTER_BLOCK_PX,
+	RASTER_THREADS_MAX = 8
+};
 
 struct raster;
 
@@ -35,6 +39,10 @@ void raster_destroy(struct raster *raster); /* NULL is fine */
 void raster_begin(struct raster *raster, const struct camera *camera);
 /* Draws triangles, both sides of them. A sample shows the nearest, and of equals the first. */
 void raster_draw(struct raster *raster, const struct model_mesh *mesh);
+/* Draws meshes one after the other, to the same bits, with so many threads: a power of two up to
+ * RASTER_THREADS_MAX. Returns -ENOMEM; then it drew nothing. */
+must_check int raster_draw_meshes(struct raster *raster, const struct model_mesh *meshes,
+				  uint32_t count, uint32_t threads);
 /* Returns true if nothing in the box can be seen, whatever it is: all of it is behind what was
  * drawn, or outside the frame. */
 bool raster_hides(struct raster *raster, const float low_m[3], const float high_m[3]);

@@ -160,6 +160,71 @@ static void hides_only_what_is_behind(void **state)
 	raster_destroy(raster);
 }
 
+enum { TRIANGLES = 2000, THREADS = 4 };
+
+/* Triangles here and there, large and small, some of them behind the eye. */
+static void scatter(struct model_vertex vertices[3 * TRIANGLES])
+{
+	uint32_t seed = 1;
+
+	memset(vertices, 0, 3 * TRIANGLES * sizeof(*vertices));
+	for (uint32_t i = 0; i < 3 * TRIANGLES; i++) {
+		const float size = i / 3 % 10 ? 0.05f : 2;
+
+		for (int k = 0; k < 3; k++) {
+			seed = seed * 1664525 + 1013904223;
+			vertices[i].position_m[k] =
+				i % 3 ? vertices[i - 1].position_m[k] +
+						size * ((float)(seed >> 8) / 8388608 - 1)
+				      : 4 * ((float)(seed >> 8) / 8388608 - 1);
+		}
+		vertices[i].normal[i % 3] = 127;
+		memcpy(vertices[i].colour, &seed, sizeof(vertices[i].colour));
+	}
+}
+
+static void draws_the_same_with_several_threads(void **state)
+{
+	static struct model_vertex vertices[3 * TRIANGLES];
+	static uint16_t indices[3 * TRIANGLES];
+	const struct model_mesh meshes[2] = {
+		{ .vertex_count = 3 * TRIANGLES,
+		  .index_count = 3 * 1200,
+		  .vertices = vertices,
+		  .indices = indices },
+		{ .vertex_count = 3 * TRIANGLES,
+		  .index_count = 3 * (TRIANGLES - 1200),
+		  .vertices = vertices,
+		  .indices = indices + 3 * 1200 },
+	};
+	struct raster *whole = begin(), *shared = begin();
+	uint32_t shown = 0;
+
+	(void)state;
+	scatter(vertices);
+	for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+		indices[i] = (uint16_t)i;
+	raster_draw(whole, &meshes[0]);
+	raster_draw(whole, &meshes[1]);
+	CHECK(raster_draw_meshes(shared, meshes, 2, THREADS) == 0);
+	for (uint32_t i = 0; i < SIDE / 8 * (SIDE / 8); i++) {
+		struct raster_block a = { 0 }, b = { 0 };
+		const bool shows = raster_get_block(whole, i % (SIDE / 8), i / (SIDE / 8), &a);
+
+		CHECK(shows == raster_get_block(shared, i % (SIDE / 8), i / (SIDE / 8), &b));
+		if (!shows)
+			continue;
+		shown++;
+		CHECK(memcmp(a.inverse_m, b.inverse_m, RASTER_BLOCK_SAMPLES * sizeof(float)) == 0);
+		for (uint32_t k = 0; k < RASTER_BLOCK_SAMPLES; k++)
+			CHECK(a.inverse_m[k] <= 0 ||
+			      (a.surface[k] == b.surface[k] && a.colour[k] == b.colour[k]));
+	}
+	CHECK(shown > 10);
+	raster_destroy(whole);
+	raster_destroy(shared);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -167,6 +232,7 @@ int main(void)
 		cmocka_unit_test(shows_the_nearest_and_its_side),
 		cmocka_unit_test(clips_what_passes_the_eye),
 		cmocka_unit_test(hides_only_what_is_behind),
+		cmocka_unit_test(draws_the_same_with_several_threads),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
