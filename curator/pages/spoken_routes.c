@@ -7,7 +7,7 @@
 
 #include "curator/pages/content_save.h"
 #include "curator/pages/save_answer.h"
-#include "curator/pages/sound_check.h"
+#include "curator/pages/sound_import.h"
 #include "pipeline/content/spoken_sound.h"
 #include "storage/info_spoken.h"
 
@@ -80,6 +80,7 @@ static void change(struct site *site, const struct api_request *request,
 						  .removes = removes,
 						  .base = base },
 						{ .name = its_words, .removes = true } };
+	struct buffer recording;
 	uint32_t count = 1;
 	cJSON *json;
 	int rc = 0;
@@ -92,6 +93,7 @@ static void change(struct site *site, const struct api_request *request,
 			 "belongs to it");
 		return;
 	}
+	buffer_init(&recording, INFO_SPOKEN_BYTES_MAX);
 	name_file(request, kind, name);
 	name_file(request, &words, its_words);
 	if (removes && kind == &sound && is_there(site, its_words))
@@ -101,7 +103,9 @@ static void change(struct site *site, const struct api_request *request,
 	if (!removes && request->body.size == 0)
 		rc = diagnostics_add(&problems, -EINVAL, NULL, 0, "the file is empty");
 	else if (!removes && kind == &sound)
-		rc = sound_check(documents[0].text, &problems);
+		rc = sound_import(&recording, documents[0].text, &problems);
+	if (recording.size > 0)
+		documents[0].text = buffer_bytes(&recording);
 	if (rc == 0)
 		rc = content_save(site, documents, count, request->caller.name, what, &problems);
 	if (rc < 0) {
@@ -111,6 +115,7 @@ static void change(struct site *site, const struct api_request *request,
 		cJSON_AddStringToObject(json, "tag", documents[0].tag);
 		api_send_json(response, json);
 	}
+	buffer_finish(&recording);
 	diagnostics_finish(&problems);
 }
 

@@ -56,7 +56,7 @@ curator=
 build/gopura-content build "$content" --out "$work/release" --keys "$small_keys" >"$work/log" 2>&1 || { cat "$work/log"; fail "it is refused"; }
 build/gopura-content verify "$work/release" >"$work/log" 2>&1 || { cat "$work/log"; fail "the release"; }
 build/gopura-content inspect "$work/release" >"$work/log" 2>&1 || { cat "$work/log"; fail "inspect"; }
-grep -qE 'information page, [0-9]+ bytes, 19 children' "$work/log" || { cat "$work/log"; fail "the new picture is not published"; }
+grep -qE 'information page, [0-9]+ bytes, 20 children' "$work/log" || { cat "$work/log"; fail "the new picture is not published"; }
 build/gopura-content annotations export "$content" --out "$work/parts.jsonld" >"$work/log" 2>&1 || { cat "$work/log"; fail "it cannot be exported"; }
 grep -q 'The arrived end, by both' "$work/parts.jsonld" || fail "the page is not what they wrote"
 ! grep -q 'A part to remove' "$work/parts.jsonld" || fail "the part that was removed is there"
