@@ -7,6 +7,9 @@
 
 #include "base/compiler.h"
 
+/* Bounds of `triangles`, in a profile and on the command line. */
+enum { PROFILE_TRIANGLES_LEAST = 10000, PROFILE_TRIANGLES_MOST = 20000000 };
+
 struct profile {
 	/* [panel] */
 	int rotation_deg; /* 0, 90, 180, 270, clockwise; of panel and touch together */

@@ -10,6 +10,7 @@
 
 #include "app/visit/presence.h"
 #include "base/log.h"
+#include "board/profile.h"
 #include "sound/speaker.h"
 
 static const char help_text[] =
@@ -38,6 +39,8 @@ static const char help_text[] =
 	"  --boards DIR         board profiles that gopura.conf may name\n"
 	"                       (default: /usr/share/gopura/board)\n"
 	"  --board FILE         profile of the board (docs/board.md)\n"
+	"  --budget-triangles N most triangles drawn in a frame, 10000 to 20000000 (default: triangles\n"
+	"                       in the board's profile)\n"
 	"  --display KIND       drm, window, headless or auto (default)\n"
 	"  --device FILE        KMS device, such as /dev/dri/card0 (default: the first with a panel)\n"
 	"  --size WxH[@HZ]      size of the window or picture, or mode of the panel\n"
@@ -96,6 +99,7 @@ enum {
 	OPTION_DEVICE,
 	OPTION_SIZE,
 	OPTION_BOARD,
+	OPTION_BUDGET_TRIANGLES,
 	OPTION_MODE,
 	OPTION_LANGUAGE,
 	OPTION_TOUCH_REPLAY,
@@ -136,6 +140,7 @@ static const struct option long_options[] = {
 	{ "device", required_argument, NULL, OPTION_DEVICE },
 	{ "size", required_argument, NULL, OPTION_SIZE },
 	{ "board", required_argument, NULL, OPTION_BOARD },
+	{ "budget-triangles", required_argument, NULL, OPTION_BUDGET_TRIANGLES },
 	{ "mode", required_argument, NULL, OPTION_MODE },
 	{ "language", required_argument, NULL, OPTION_LANGUAGE },
 	{ "touch-replay", required_argument, NULL, OPTION_TOUCH_REPLAY },
@@ -294,6 +299,9 @@ static bool set_value(struct options *o, int option, const char *text)
 		return parse_whole(text, PRESENCE_IDLE_LEAST_S, PRESENCE_IDLE_MOST_S, &o->idle_s);
 	case OPTION_LOUDNESS:
 		return parse_whole(text, 0, SPEAKER_LOUDNESS_MAX, &o->loudness);
+	case OPTION_BUDGET_TRIANGLES:
+		return parse_whole(text, PROFILE_TRIANGLES_LEAST, PROFILE_TRIANGLES_MOST,
+				   &o->budget_triangles);
 	case OPTION_SHIFT:
 		o->shift = true;
 		return true;

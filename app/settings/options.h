@@ -38,6 +38,7 @@ struct options {
 	int width_px, height_px; /* 0: the panel's preferred mode */
 	int hz;                  /* 0: any */
 	const char *board_path;
+	int budget_triangles; /* most triangles per frame; 0: as the profile says */
 	const char *touch_replay_path;
 	const char *views_path; /* with capture_dir */
 	const char *capture_dir;

@@ -121,6 +121,8 @@ static int read_profile(struct provision *provision, const struct options *optio
 	}
 	if (terminal->rotation_deg >= 0)
 		out->rotation_deg = terminal->rotation_deg;
+	if (options->budget_triangles > 0)
+		out->triangles = (uint32_t)options->budget_triangles;
 	return rc;
 }
 

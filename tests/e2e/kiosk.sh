@@ -44,6 +44,7 @@ done
 says 2 "--size does not accept '12'" $kiosk --size 12
 says 2 "--display does not accept 'tv'" $kiosk --display tv
 says 2 "--mode does not accept 'best'" $kiosk --mode best
+says 2 "--budget-triangles does not accept '9999'" $kiosk --budget-triangles 9999
 says 2 "--poll-s does not accept '0'" $kiosk --poll-s 0
 says 2 "--download does not accept '22:00'" $kiosk --download 22:00
 says 2 "--log does not accept 'all'" $kiosk --log all

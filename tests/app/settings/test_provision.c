@@ -92,6 +92,7 @@ static void the_command_line_overrides(void **state)
 	options.height_px = 360;
 	options.download = (struct daily){ 60, 120 };
 	options.board_path = "board/panel-4k.ini";
+	options.budget_triangles = 54321;
 	CHECK(hours_parse(&options.hours, "10:00-11:00"));
 	CHECK(take(full) == 0);
 	CHECK(strcmp(options.release_url, "/media/release") == 0);
@@ -100,7 +101,7 @@ static void the_command_line_overrides(void **state)
 	CHECK(options.width_px == 640 && options.hz == 0);
 	CHECK(options.download.from_min == 60 && options.wake_min == 0);
 	CHECK(!hours_open_at(&options.hours, &(struct tm){ .tm_hour = 9 }));
-	CHECK(profile.texture_mib == 256);
+	CHECK(profile.texture_mib == 256 && profile.triangles == 54321);
 }
 
 static void the_terminal_has_its_own_time_but_not_against_who_starts_it(void **state)

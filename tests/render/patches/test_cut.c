@@ -104,6 +104,20 @@ static void stays_within_the_triangles(void **state)
 	CHECK(cut->shown[1] + cut->shown[2] == 1 && !cut->shown[3]);
 }
 
+/* The root group has 200 triangles; groups 1 and 2 add 100 each, group 3 none. */
+static void meets_any_number_of_triangles(void **state)
+{
+	struct cut *cut = *state;
+	const uint8_t loaded[4] = { 1, 1, 1, 1 };
+	struct view view = view_from(10, -60, 10);
+	for (uint32_t budget = 200; budget <= 600; budget++) {
+		const struct cut_options options = { 0.001f, budget };
+		update(cut, &view, loaded, &options);
+		CHECK(cut->triangle_count <= budget);
+		CHECK(cut->triangle_count + 100 > budget || cut->shown[3]);
+	}
+}
+
 static void wants_only_what_is_in_sight(void **state)
 {
 	struct cut *cut = *state;
@@ -164,6 +178,7 @@ int main(void)
 		cmocka_unit_test(coarser_patches_stand_in_for_what_is_not_loaded),
 		cmocka_unit_test(refines_no_further_than_the_error_asks),
 		cmocka_unit_test(stays_within_the_triangles),
+		cmocka_unit_test(meets_any_number_of_triangles),
 		cmocka_unit_test(wants_only_what_is_in_sight),
 		cmocka_unit_test(wants_only_what_shows_and_what_that_needs),
 		cmocka_unit_test(every_cut_is_valid_from_everywhere),
