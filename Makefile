@@ -18,7 +18,7 @@ comma   := ,
 FOLDERS := base geometry format tuf board system render ui input sound storage net app pipeline curator health
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd \
-           libwebsockets libgit2 opusfile ogg alsa libcrypto
+           libwebsockets libgit2 opusfile ogg alsa libcrypto zlib
 # METIS and jsmn (only a header) have no pkg-config file in Debian 12.
 EXTRA   := -lmetis -lm -pthread
 

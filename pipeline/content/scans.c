@@ -67,7 +67,8 @@ static void put_file(struct buffer *text, const struct content *content, const c
 /* Selects files that a scan may refer to. */
 static int is_companion(const struct dirent *entry)
 {
-	static const char *const extensions[] = { ".mtl", ".jpg", ".jpeg", ".png", ".bin" };
+	static const char *const extensions[] = { ".mtl", ".jpg", ".jpeg", ".png",
+						  ".bin", ".wrl", ".wrz" };
 	const char *dot = strrchr(entry->d_name, '.');
 
 	for (size_t i = 0; dot && i < ARRAY_COUNT(extensions); i++)

@@ -20,6 +20,7 @@
 #include "pipeline/import/import_foreign.h"
 #include "pipeline/import/import_limits.h"
 #include "pipeline/import/import_ply.h"
+#include "pipeline/import/import_vrml.h"
 #include "pipeline/import/mesh_colour.h"
 
 static const uint8_t sandstone[3] = { 186, 166, 136 };
@@ -28,7 +29,7 @@ static const uint8_t sandstone[3] = { 186, 166, 136 };
 
 const char *import_format_name(enum scan_format format)
 {
-	static const char *const names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB" };
+	static const char *const names[] = { "PLY", "STL", "OFF", "OBJ", "glTF", "GLB", "VRML" };
 
 	return format < SCAN_UNKNOWN ? names[format] : "";
 }
@@ -41,8 +42,9 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 		const char *extension;
 		enum scan_format format;
 	} names[] = {
-		{ ".ply", SCAN_PLY }, { ".stl", SCAN_STL },   { ".off", SCAN_OFF },
-		{ ".obj", SCAN_OBJ }, { ".gltf", SCAN_GLTF }, { ".glb", SCAN_GLB },
+		{ ".ply", SCAN_PLY },  { ".stl", SCAN_STL },   { ".off", SCAN_OFF },
+		{ ".obj", SCAN_OBJ },  { ".gltf", SCAN_GLTF }, { ".glb", SCAN_GLB },
+		{ ".wrl", SCAN_VRML }, { ".wrz", SCAN_VRML },
 	};
 
 	if (size >= 4 && memcmp(head, "ply", 3) == 0 && isspace((unsigned char)head[3]))
@@ -51,6 +53,8 @@ static enum scan_format sniff(const char *path, const char *head, size_t size)
 		return SCAN_GLB;
 	if (size >= 3 && memcmp(head, "OFF", 3) == 0)
 		return SCAN_OFF;
+	if (size >= 6 && memcmp(head, "#VRML ", 6) == 0)
+		return SCAN_VRML;
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
 		if (import_has_extension(path, names[i].extension))
 			return names[i].format;
@@ -82,8 +86,8 @@ int import_detect(enum scan_format *format, uint64_t *file_bytes, const char *pa
 	if (*format == SCAN_UNKNOWN)
 		return diagnostics_add(
 			diagnostics, -EINVAL, path, 0,
-			"not a supported scan format; give PLY, OBJ, STL, OFF, glTF or "
-			"GLB");
+			"not a supported scan format; give PLY, OBJ, STL, OFF, glTF, "
+			"GLB or VRML97");
 	return 0;
 }
 
@@ -372,7 +376,8 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 		     const struct import_options *options, struct import_report *report,
 		     struct diagnostics *diagnostics)
 {
-	static const char *const extensions[] = { ".ply", ".stl", ".off", ".obj", ".gltf", ".glb" };
+	static const char *const extensions[] = { ".ply",  ".stl", ".off", ".obj",
+						  ".gltf", ".glb", ".wrl" };
 	const struct import_foreign_format foreign = {
 		.extension = extensions[format],
 		.is_linear = format == SCAN_GLTF || format == SCAN_GLB,
@@ -383,6 +388,8 @@ static int read_scan(struct mesh *out, const char *path, enum scan_format format
 
 	if (format == SCAN_PLY)
 		return import_ply(out, path, options, report, diagnostics);
+	if (format == SCAN_VRML)
+		return import_vrml(out, path, options, report, diagnostics);
 	rc = check_format(path, format, report->file_bytes, diagnostics);
 	if (rc < 0)
 		return rc;

@@ -1,4 +1,5 @@
-/* Reads a scan file into a repaired mesh in metres, z up. PLY is read by pipeline/import/ply.h.
+/* Reads a scan file into a repaired mesh in metres, z up. PLY is read by pipeline/import/ply.h,
+ * VRML97 by pipeline/scene/vrml.h.
  * OBJ, STL, OFF and glTF are read by assimp in a child process with limits, so that a crash or hang
  * there becomes an error message here. docs/import.md says what is read and what is refused. */
 #ifndef GOPURA_PIPELINE_IMPORT_IMPORT_H
@@ -44,7 +45,16 @@ struct import_report {
 	struct diagnostics warning; /* the first thing that was tolerated with loss; "" if none */
 };
 
-enum scan_format { SCAN_PLY, SCAN_STL, SCAN_OFF, SCAN_OBJ, SCAN_GLTF, SCAN_GLB, SCAN_UNKNOWN };
+enum scan_format {
+	SCAN_PLY,
+	SCAN_STL,
+	SCAN_OFF,
+	SCAN_OBJ,
+	SCAN_GLTF,
+	SCAN_GLB,
+	SCAN_VRML,
+	SCAN_UNKNOWN
+};
 
 /* Returns the name of a format as reports have it, such as "PLY". */
 const char *import_format_name(enum scan_format format);

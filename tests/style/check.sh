@@ -37,7 +37,7 @@ may_enter() {
 	render/lumigraph) answer="display plan patches" ;;
 	render/patches) answer="display plan" ;;
 	render/scene) answer="display plan patches lumigraph" ;;
-	pipeline/import) answer="keys" ;; # refuses to hand one to the reader of a scan
+	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import" ;;
 	pipeline/octree) answer="import" ;;
 	pipeline/hierarchy) answer="import material" ;;
@@ -63,6 +63,7 @@ is_public() {
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
 	pipeline/import/*) names="alignment json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
+	pipeline/scene/*) names="vrml vrml_text vrml_surface soup" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;

@@ -1,0 +1,50 @@
+/* A VRML97 scene, gzip'd or not, which may name itself as the file of an Inline or a prototype: it
+ * is refused with its name, or becomes triangles whose numbers are finite or far, and whose
+ * textures are there. */
+#include <errno.h>
+
+#include "pipeline/scene/vrml_surface.h"
+#include "tests/fuzz/scratch.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+static int open_beside(void *data, const char *name)
+{
+	return strcmp(name, "other.wrl") == 0 ? open(data, O_RDONLY | O_CLOEXEC) : -ENOENT;
+}
+
+static void check(const struct vrml_surface *surface)
+{
+	for (uint32_t i = 0; i < surface->soup.count; i++) {
+		uint32_t texture = surface->soup.triangles[i].texture;
+
+		if (texture != SOUP_NO_TEXTURE && texture >= surface->texture_count)
+			abort();
+	}
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct vrml_options options = { .open_file = open_beside };
+	struct vrml_surface surface;
+	struct vrml *scene;
+	int rc;
+
+	scratch_begin();
+	scratch_write("other.wrl", data, size);
+	options.data = (void *)scratch_path("other.wrl");
+	rc = vrml_read(&scene, (struct bytes){ data, size }, "a.wrl", &options, &diagnostics,
+		       &warnings);
+	if (rc == 0) {
+		rc = vrml_surface_make(&surface, scene, &diagnostics);
+		if (rc == 0) {
+			check(&surface);
+			vrml_surface_finish(&surface);
+		}
+	}
+	if (rc < 0 && !strstr(diagnostics.first.text, ".wrl"))
+		abort();
+	vrml_destroy(scene);
+	return 0;
+}
