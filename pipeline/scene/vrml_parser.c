@@ -115,20 +115,14 @@ static int parse_value(struct vrml_parser *parser, const struct vrml_type *type,
 	return 0;
 }
 
-/* Skips the value of a field that we do not know: numbers, texts, a node, or a list of these. */
-static int skip_value(struct vrml_parser *parser)
+/* Skips one item of a value: a word of truth, a node, or numbers and texts. */
+static int skip_item(struct vrml_parser *parser)
 {
 	struct vrml_node *node;
 	struct vrml_token token = vrml_peek(parser);
-	int rc = 0;
 
 	if (vrml_take(parser, "TRUE") || vrml_take(parser, "FALSE"))
 		return 0;
-	if (vrml_take(parser, "[")) {
-		while (rc == 0 && !vrml_take(parser, "]"))
-			rc = skip_value(parser);
-		return rc;
-	}
 	if (token.kind == VRML_WORD)
 		return parse_node(parser, &node);
 	if (token.kind != VRML_NUMBER && token.kind != VRML_STRING)
@@ -138,6 +132,18 @@ static int skip_value(struct vrml_parser *parser)
 		token = vrml_peek(parser);
 	}
 	return 0;
+}
+
+/* Skips the value of a field that we do not know: an item, or a list, which holds no lists. */
+static int skip_value(struct vrml_parser *parser)
+{
+	int rc = 0;
+
+	if (!vrml_take(parser, "["))
+		return skip_item(parser);
+	while (rc == 0 && !vrml_take(parser, "]"))
+		rc = skip_item(parser);
+	return rc;
 }
 
 /* Reads a file that the scene names, once. */

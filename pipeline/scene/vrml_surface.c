@@ -11,12 +11,13 @@
 #include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_shapes.h"
 
-enum { VISITS_MAX = 1 << 20 };
+/* USE can nest nodes deeper than the text does. */
+enum { VISITS_MAX = 1 << 20, DEPTH_MAX = 1000 };
 
 struct walk {
 	struct vrml_surface *out;
 	struct diagnostics *diagnostics;
-	uint32_t visits;
+	uint32_t visits, depth;
 };
 
 static const float identity[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
@@ -217,6 +218,10 @@ static int visit(struct walk *walk, const struct vrml_node *node, const float pa
 				       VISITS_MAX);
 	if (strcmp(node->type->name, "Shape") == 0)
 		return add_shape(walk, node, parent);
+	if (++walk->depth > DEPTH_MAX)
+		return diagnostics_add(walk->diagnostics, -EFBIG, node->file, node->line,
+				       "USE nests nodes over %d deep; flatten the scene",
+				       DEPTH_MAX);
 	if (strcmp(node->type->name, "Transform") == 0)
 		transform(place, parent, node);
 	else
@@ -224,6 +229,7 @@ static int visit(struct walk *walk, const struct vrml_node *node, const float pa
 	children = children_of(node, &count);
 	for (uint32_t i = 0; i < count && rc == 0; i++)
 		rc = visit(walk, children[i], place);
+	walk->depth--;
 	return rc;
 }
 

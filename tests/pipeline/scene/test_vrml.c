@@ -288,6 +288,32 @@ static void bombs_are_refused(void **state)
 	}
 }
 
+/* Neither what is skipped nor what USE nests may use up the stack. */
+static void endless_depth_is_refused(void **state)
+{
+	enum { LINKS = 200000, ROOM = LINKS * 48 };
+	char *text = malloc(ROOM);
+	size_t at = (size_t)snprintf(text, ROOM, HEAD "Group { unknown ");
+	struct diagnostics diagnostics = { 0 };
+	struct vrml_surface surface;
+	struct vrml *scene;
+
+	(void)state;
+	memset(text + at, '[', ROOM - at);
+	text[ROOM - 1] = '\0';
+	CHECK(make_text(&surface, &scene, text, &diagnostics) == -EBADMSG);
+	at = (size_t)snprintf(text, ROOM, HEAD "Switch { choice [ DEF n0 Group { }\n");
+	for (int i = 1; i < LINKS; i++)
+		at += (size_t)snprintf(text + at, ROOM - at, "DEF n%d Group{children USE n%d}\n", i,
+				       i - 1);
+	snprintf(text + at, ROOM - at, "] } USE n%d", LINKS - 1);
+	diagnostics = (struct diagnostics){ 0 };
+	CHECK(make_text(&surface, &scene, text, &diagnostics) == -EFBIG);
+	CHECK(strstr(diagnostics.first.text, "USE nests"));
+	vrml_destroy(scene);
+	free(text);
+}
+
 static void a_gzipped_scene_is_read_and_a_cut_one_refused(void **state)
 {
 	static const char text[] = HEAD "Shape { geometry Box {} }";
@@ -324,6 +350,7 @@ int main(void)
 		cmocka_unit_test(colours_are_of_the_vertex_the_face_or_the_material),
 		cmocka_unit_test(a_fault_names_file_line_and_cure),
 		cmocka_unit_test(bombs_are_refused),
+		cmocka_unit_test(endless_depth_is_refused),
 		cmocka_unit_test(a_gzipped_scene_is_read_and_a_cut_one_refused),
 	};
 
