@@ -27,6 +27,9 @@ async function draw(points) {
   await mouse("mouseReleased", points[points.length - 1]);
 }
 
+// Pixels of the picture as blue as what is marked.
+const blue = `(() => { const c = document.querySelector("#picture"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i + 2] > d[i] + 20; return n; })()`;
+
 async function mark() {
   await browser.key("4", 0, 52);
   await draw(Array.from({ length: 20 }, (_, n) => [-0.1 + n * 0.01, 0.03 * Math.sin(n)]));
@@ -34,8 +37,10 @@ async function mark() {
   await draw(Array.from({ length: 41 }, (_, n) => [0.3 * Math.cos(n * Math.PI / 20), 0.3 * Math.sin(n * Math.PI / 20)]));
   await browser.until(`!document.querySelector("#apply").disabled`, "strokes");
   await browser.picture(`${folder}/2-strokes.png`);
+  const before = await browser.evaluate(blue);
   await browser.click("#apply");
-  await browser.until(`Number(document.querySelector("#count").textContent.replace(/\\D/g, "")) > 50 && document.querySelector("#quality").hidden`, "a region");
+  await browser.until(`Number(document.querySelector("#count").textContent.replace(/\\D/g, "")) > 50`, "a region");
+  await browser.until(`${blue} > ${before + 500}`, "the region in the picture");
   await browser.evaluate(`document.querySelector("#title").focus()`);
   await browser.type("Corner of the gallery");
   await browser.picture(`${folder}/3-marked.png`);
