@@ -1,4 +1,5 @@
-/* Boxes, bodies of revolution, grids and extrusions. Sets of faces are vrml_faces.c. */
+/* Boxes, bodies of revolution and grids. Sets of faces are vrml_faces.c, extrusions
+ * vrml_extrusion.c. */
 #include "pipeline/scene/vrml_shapes.h"
 
 #include <errno.h>
@@ -7,6 +8,7 @@
 #include <string.h>
 
 #include "geometry/vec.h"
+#include "pipeline/scene/vrml_extrusion.h"
 #include "pipeline/scene/vrml_faces.h"
 
 #define TURN 6.2831853f
@@ -218,12 +220,17 @@ static int add_grid(const struct shaping *shaping)
 	return rc;
 }
 
+static int add_extrusion(const struct shaping *shaping)
+{
+	return vrml_extrusion_add(shaping->soup, shaping->node, shaping->rgb);
+}
+
 static const struct {
 	const char *name;
 	int (*add)(const struct shaping *shaping);
 } bodies[] = {
 	{ "Box", add_box },           { "Sphere", add_sphere },      { "Cone", add_cone },
-	{ "Cylinder", add_cylinder }, { "ElevationGrid", add_grid },
+	{ "Cylinder", add_cylinder }, { "ElevationGrid", add_grid }, { "Extrusion", add_extrusion },
 };
 
 static int add_any(const struct shaping *shaping)

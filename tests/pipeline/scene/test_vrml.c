@@ -104,6 +104,48 @@ static void check_solid(const char *text, double volume, double share)
 	vrml_destroy(scene);
 }
 
+/* A ring of radius 2 of a square rod, in the xz plane or upright. */
+static void check_ring(const char *axes)
+{
+	enum { STEPS = 48 };
+	char text[8192];
+	int used = snprintf(text, sizeof(text),
+			    HEAD "Shape { geometry Extrusion { crossSection [ .1 .1, .1 -.1, -.1 "
+				 "-.1, -.1 .1, .1 .1 ] spine [ ");
+
+	for (int i = 0; i <= STEPS; i++) {
+		const double angle = 2 * 3.14159265358979 * (i % STEPS) / STEPS;
+		const double x = 2 * cos(angle), y = 2 * sin(angle);
+
+		used += snprintf(text + used, sizeof(text) - (size_t)used, "%.6f %.6f %.6f, ", x,
+				 axes[1] == 'y' ? y : 0, axes[1] == 'y' ? 0 : y);
+	}
+	snprintf(text + used, sizeof(text) - (size_t)used, "] } }");
+	check_solid(text, 2 * 3.14159265358979 * 2 * 0.04, 0.02);
+}
+
+static void extrusions_follow_their_spine(void **state)
+{
+	(void)state;
+	check_solid(HEAD "Shape { geometry Extrusion {} }", 4, 1e-4);
+	check_solid(HEAD "Shape { geometry Extrusion { scale [ 1 1, .5 .5 ] } }", 7 / 3., 1e-4);
+	check_solid(HEAD "Shape { geometry Extrusion { spine [ 0 0 0, 3 0 0 ] } }", 12, 1e-4);
+	check_solid(HEAD "Shape { geometry Extrusion { spine [ 0 0 0, 0 -2 0 ] } }", 8, 1e-4);
+	check_solid(HEAD "Shape { geometry Extrusion { orientation 0 1 0 .7 spine [ 0 0 0, 0 0 1, "
+			 "0 0 1, 0 0 2 ] } }",
+		    8, 1e-4);
+	/* round a corner: the section at the bend is cut at half the angle, which makes it thinner
+	 */
+	check_solid(HEAD "Shape { geometry Extrusion { spine [ 0 0 0, 0 5 0, 5 5 0 ] } }",
+		    2 * 5 * 4 * (1 + 0.70711) / 2, 0.03);
+	check_ring("xz");
+	check_ring("xy");
+	/* concave and open; the caps close it */
+	check_solid(HEAD "Shape { geometry Extrusion { endCap TRUE crossSection [ 2 0, 0 -1, 1 0, "
+			 "0 1, 2 0 ] } }",
+		    1, 1e-4);
+}
+
 static void solids_look_outwards_and_have_their_size(void **state)
 {
 	const double pi = 3.14159265358979;
@@ -345,6 +387,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(solids_look_outwards_and_have_their_size),
+		cmocka_unit_test(extrusions_follow_their_spine),
 		cmocka_unit_test(prototypes_files_and_repeated_nodes_are_put_in_place),
 		cmocka_unit_test(concave_faces_and_grids_have_their_area),
 		cmocka_unit_test(colours_are_of_the_vertex_the_face_or_the_material),
