@@ -6,7 +6,6 @@
 #include <string.h>
 #include <webp/decode.h>
 
-#include "base/proc_number.h"
 #include "base/shared_memory.h"
 #include "curator/pages/exif_orientation.h"
 #include "format/page.h"
@@ -203,15 +202,11 @@ int picture_import(struct buffer *out, bool *is_png, struct bytes file,
 	struct sandbox_options options = { .timeout_s = TIMEOUT_S };
 	struct job *job = shared_memory_create(sizeof(*job));
 	struct diagnostics told = { 0 };
-	unsigned long long own_kb = 0;
 	int rc;
 
 	if (!job)
 		return explain(-ENOMEM, diagnostics);
-	/* The child begins with all that this process has mapped. */
-	if (!proc_number("/proc/self/status", "VmSize: %llu kB", &own_kb))
-		own_kb = 0;
-	options.memory_bytes = ((uint64_t)own_kb << 10) + ((uint64_t)MEMORY_MB << 20);
+	options.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
 	job->file = file;
 	rc = sandbox_run(work, job, &options, "picture", &told);
 	if (rc == 0 && (job->bytes == 0 || job->bytes > sizeof(job->data)))

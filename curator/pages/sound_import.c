@@ -5,7 +5,6 @@
 #include <ogg/ogg.h>
 #include <string.h>
 
-#include "base/proc_number.h"
 #include "base/shared_memory.h"
 #include "pipeline/content/spoken_sound.h"
 #include "pipeline/import/sandbox.h"
@@ -179,15 +178,11 @@ static int run(struct buffer *out, struct bytes file)
 	const size_t room = INFO_SPOKEN_BYTES_MAX;
 	struct job *job = shared_memory_create(sizeof(*job) + room);
 	struct diagnostics told = { 0 };
-	unsigned long long own_kb = 0;
 	int rc;
 
 	if (!job)
 		return -ENOMEM;
-	/* The child begins with all that this process has mapped. */
-	if (!proc_number("/proc/self/status", "VmSize: %llu kB", &own_kb))
-		own_kb = 0;
-	options.memory_bytes = ((uint64_t)own_kb << 10) + ((uint64_t)MEMORY_MB << 20);
+	options.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
 	job->file = file;
 	job->room = room;
 	rc = sandbox_run(work, job, &options, "recording", &told);

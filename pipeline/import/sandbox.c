@@ -21,6 +21,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/proc_number.h"
 #include "base/shared_memory.h"
 #include "pipeline/import/lockdown.h"
 
@@ -340,4 +341,13 @@ int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *o
 	rc = judge(rc, status, outcome, options, name, diagnostics);
 	shared_memory_destroy(outcome, sizeof(*outcome));
 	return rc;
+}
+
+uint64_t sandbox_memory_bytes(uint64_t more_bytes)
+{
+	unsigned long long own_kb;
+
+	if (!proc_number("/proc/self/status", "VmSize: %llu kB", &own_kb))
+		own_kb = 0;
+	return ((uint64_t)own_kb << 10) + more_bytes;
 }

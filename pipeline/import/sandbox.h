@@ -26,6 +26,10 @@ struct sandbox_options {
 	void *open_data;
 };
 
+/* Returns a limit for memory_bytes: what this process has mapped, with which the child begins, and
+ * so many bytes more. */
+uint64_t sandbox_memory_bytes(uint64_t more_bytes);
+
 /* The work of the child. Of the parent's descriptors it has only result_fd and the standard ones,
  * which lead to /dev/null (standard error stays open in a build with AddressSanitizer). Its memory
  * is a copy: changes are lost except in `shared`. Returns 0, or a negative errno with a diagnostic.
