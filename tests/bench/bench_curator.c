@@ -6,24 +6,16 @@
  * CONTENT has a master (`gopura-content hierarchy`). A view is a line: eye, target (metres, z up),
  * field of view (degrees). Prints a row of JSON: the processors it may use, and medians in
  * milliseconds, the picture's encoding included. */
+#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/clock.h"
 #include "base/diagnostics.h"
 #include "base/parallel.h"
 #include "curator/session/painter.h"
+#include "tests/bench/stage.h"
 
 enum { VIEWS_MAX = 256, PICTURE_BYTES_MAX = 16 << 20 };
-
-static void must(int rc, const char *what)
-{
-	if (rc == 0)
-		return;
-	fprintf(stderr, "bench_curator: %s: %s\n", what, strerror(-rc));
-	exit(1);
-}
 
 static double draw(struct painter *painter, const struct camera *camera, bool sharp)
 {
@@ -31,22 +23,9 @@ static double draw(struct painter *painter, const struct camera *camera, bool sh
 	struct buffer picture;
 
 	buffer_init(&picture, PICTURE_BYTES_MAX);
-	must(painter_draw(painter, camera, sharp, &picture), "a picture");
+	stage_must(painter_draw(painter, camera, sharp, &picture), "a picture");
 	buffer_finish(&picture);
 	return (double)(clock_now_us() - begun_us) / 1000;
-}
-
-static int by_size(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
-static double median(double *values, uint32_t count)
-{
-	qsort(values, count, sizeof(*values), by_size);
-	return values[count / 2];
 }
 
 int main(int argc, char **argv)
@@ -63,9 +42,9 @@ int main(int argc, char **argv)
 		fprintf(stderr, "usage: bench_curator CONTENT < views\n");
 		return 2;
 	}
-	must(site_open(&site, argv[1], &diagnostics), argv[1]);
-	must(region_set_init(&set, site.mesh->triangle_count), "a region");
-	must(painter_create(&painter, &site, &set), "a painter");
+	stage_must(site_open(&site, argv[1], &diagnostics), argv[1]);
+	stage_must(region_set_init(&set, site.mesh->triangle_count), "a region");
+	stage_must(painter_create(&painter, &site, &set), "a painter");
 	while (count < VIEWS_MAX && fgets(line, sizeof(line), stdin)) {
 		struct camera c = { .up = { 0, 0, 1 },
 				    .near_m = 0.02f,
@@ -80,11 +59,11 @@ int main(int argc, char **argv)
 		sharp_ms[count] = draw(painter, &c, true);
 		fast_ms[count++] = draw(painter, &c, false);
 	}
-	must(count > 0 ? 0 : -1, "views");
+	stage_must(count > 0 ? 0 : -EINVAL, "no line is a view");
 	printf("{\"processors\": %u, \"triangles\": %u, \"views\": %u, \"sharp_ms\": %.1f, "
 	       "\"fast_ms\": %.1f}\n",
-	       parallel_cores(), site.mesh->triangle_count, count, median(sharp_ms, count),
-	       median(fast_ms, count));
+	       parallel_cores(), site.mesh->triangle_count, count, stage_median(sharp_ms, count),
+	       stage_median(fast_ms, count));
 	painter_destroy(painter);
 	region_set_finish(&set);
 	site_close(&site);
