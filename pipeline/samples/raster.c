@@ -374,11 +374,12 @@ struct rows {
 	uint32_t first, every;
 };
 
-/* The samples whose middles lie in the bounding box of a triangle. Returns false if none do. */
+/* The samples whose middles lie in the bounding box of a triangle. */
 struct bounds {
 	int32_t low_x, low_y, high_x, high_y;
 };
 
+/* Returns false if there are none. */
 vector_inline bool find_bounds(const struct raster *raster, const struct corner *a,
 			       const struct corner *b, const struct corner *c, struct bounds *out)
 {

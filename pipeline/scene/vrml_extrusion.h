@@ -1,4 +1,4 @@
-/* Makes triangles of Extrusion. Private to this room. */
+/* Makes triangles of Extrusion. Private to pipeline/scene. */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_EXTRUSION_H
 #define GOPURA_PIPELINE_SCENE_VRML_EXTRUSION_H
 

@@ -1,4 +1,4 @@
-/* Makes triangles of IndexedFaceSet, and reads colours. Private to this room. */
+/* Makes triangles of IndexedFaceSet, and reads colours. Private to pipeline/scene. */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_FACES_H
 #define GOPURA_PIPELINE_SCENE_VRML_FACES_H
 

@@ -1,4 +1,4 @@
-/* The files of a VRML97 scene. Private to this room. */
+/* The files of a VRML97 scene. Private to pipeline/scene. */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_FILES_H
 #define GOPURA_PIPELINE_SCENE_VRML_FILES_H
 

@@ -19,6 +19,7 @@ enum { DEPTH_MAX = 200, NODES_MAX = 1 << 18 };
 
 static int parse_node(struct vrml_parser *parser, struct vrml_node **out);
 static int parse_nodes(struct vrml_parser *parser, struct vrml_list *nodes, bool in_braces);
+
 /* ---- values */
 
 /* Reads one item and adds it. */

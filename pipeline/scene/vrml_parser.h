@@ -1,4 +1,4 @@
-/* Parses the text of a VRML97 file into nodes. Private to this room. */
+/* Parses the text of a VRML97 file into nodes. Private to pipeline/scene. */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_PARSER_H
 #define GOPURA_PIPELINE_SCENE_VRML_PARSER_H
 

@@ -89,7 +89,6 @@ int vrml_push(struct vrml_parser *parser, struct vrml_list *list, const void *it
 	return 0;
 }
 
-/* Moves the list into the arena; the list is empty afterwards. NULL: no memory. */
 void *vrml_settle(struct vrml_parser *parser, struct vrml_list *list, size_t bytes)
 {
 	void *kept = arena_alloc(&parser->scene->arena, list->count * bytes + 1);

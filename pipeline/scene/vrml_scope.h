@@ -1,4 +1,5 @@
-/* What the parser of VRML97 works on: files, names, prototypes, tokens. Private to this room. */
+/* What the parser of VRML97 works on: files, names, prototypes, tokens. Private to pipeline/scene.
+ */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_SCOPE_H
 #define GOPURA_PIPELINE_SCENE_VRML_SCOPE_H
 

@@ -105,7 +105,7 @@ static void check_solid(const char *text, double volume, double share)
 }
 
 /* A ring of radius 2 of a square rod, in the xz plane or upright. */
-static void check_ring(const char *axes)
+static void check_ring(bool is_upright)
 {
 	enum { STEPS = 48 };
 	char text[8192];
@@ -118,7 +118,7 @@ static void check_ring(const char *axes)
 		const double x = 2 * cos(angle), y = 2 * sin(angle);
 
 		used += snprintf(text + used, sizeof(text) - (size_t)used, "%.6f %.6f %.6f, ", x,
-				 axes[1] == 'y' ? y : 0, axes[1] == 'y' ? 0 : y);
+				 is_upright ? y : 0, is_upright ? 0 : y);
 	}
 	snprintf(text + used, sizeof(text) - (size_t)used, "] } }");
 	check_solid(text, 2 * 3.14159265358979 * 2 * 0.04, 0.02);
@@ -134,14 +134,13 @@ static void extrusions_follow_their_spine(void **state)
 	check_solid(HEAD "Shape { geometry Extrusion { orientation 0 1 0 .7 spine [ 0 0 0, 0 0 1, "
 			 "0 0 1, 0 0 2 ] } }",
 		    8, 1e-4);
-	/* round a corner: the section at the bend is cut at half the angle, which makes it thinner
-	 */
+	/* Round a corner: at the bend the section stands at half the angle, so it thins the rod. */
 	check_solid(HEAD "Shape { geometry Extrusion { spine [ 0 0 0, 0 5 0, 5 5 0 ] } }",
 		    2 * 5 * 4 * (1 + 0.70711) / 2, 0.03);
-	check_ring("xz");
-	check_ring("xy");
-	/* concave and open; the caps close it */
-	check_solid(HEAD "Shape { geometry Extrusion { endCap TRUE crossSection [ 2 0, 0 -1, 1 0, "
+	check_ring(false);
+	check_ring(true);
+	/* a concave section */
+	check_solid(HEAD "Shape { geometry Extrusion { crossSection [ 2 0, 0 -1, 1 0, "
 			 "0 1, 2 0 ] } }",
 		    1, 1e-4);
 }
