@@ -108,13 +108,16 @@ static void add_credits(struct exporter *e, cJSON *to, const cJSON *from)
 
 /* ---- the body */
 
-static void add_body(struct exporter *e, cJSON *bodies, const char *purpose, const char *format,
-		     const char *language, const char *text)
+/* id is NULL for what only this part says. */
+static void add_body(struct exporter *e, cJSON *bodies, const char *id, const char *purpose,
+		     const char *format, const char *language, const char *text)
 {
 	cJSON *body = add_object(e, bodies, NULL);
 
 	if (!body)
 		return;
+	if (id)
+		add_text(e, body, "id", id);
 	add_text(e, body, "type", "TextualBody");
 	add_text(e, body, "purpose", purpose);
 	add_text(e, body, "format", format);
@@ -122,9 +125,29 @@ static void add_body(struct exporter *e, cJSON *bodies, const char *purpose, con
 	add_text(e, body, "value", text);
 }
 
+/* Adds a document in each language that it is in, after the part's own texts. */
+static void add_document(struct exporter *e, cJSON *bodies, const char *name)
+{
+	const struct info_build_options *options = e->draft->options;
+
+	for (uint32_t i = 0; i < options->language_count && !e->failed; i++) {
+		char file[DRAFT_PAGE_NAME_BYTES];
+		char *html;
+
+		draft_name_page(e->draft, name, i, file);
+		if (draft_read_document(e->draft, file, &html) < 0)
+			e->failed = true;
+		else if (html)
+			add_body(e, bodies, file, "describing", "text/html", options->languages[i],
+				 html);
+		free(html);
+	}
+}
+
 static void add_bodies(struct exporter *e, cJSON *item, const cJSON *part, uint32_t index)
 {
 	const struct info_build_options *options = e->draft->options;
+	const struct draft_part *read = &e->draft->parts[index];
 	cJSON *bodies = cJSON_CreateArray();
 
 	add(e, item, "body", bodies);
@@ -137,13 +160,15 @@ static void add_bodies(struct exporter *e, cJSON *item, const cJSON *part, uint3
 				language));
 
 			if (text)
-				add_body(e, bodies, annotation_texts[t].purpose, "text/plain",
+				add_body(e, bodies, NULL, annotation_texts[t].purpose, "text/plain",
 					 language, text);
 		}
-		if (e->draft->parts[index].pages[i].html)
-			add_body(e, bodies, "describing", "text/html", language,
-				 e->draft->parts[index].pages[i].html);
+		if (read->pages[i].html)
+			add_body(e, bodies, NULL, "describing", "text/html", language,
+				 read->pages[i].html);
 	}
+	for (uint32_t n = 0; n < read->document_count && !e->failed; n++)
+		add_document(e, bodies, read->documents[n]);
 }
 
 /* ---- the target */

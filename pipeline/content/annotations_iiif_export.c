@@ -10,6 +10,7 @@
 #include <glib.h>
 
 #include "pipeline/content/content.h"
+#include "pipeline/content/info_pages.h"
 
 struct maker {
 	const struct draft *draft;
@@ -266,13 +267,30 @@ static void add_choice(struct maker *m, cJSON **choice, cJSON *bodies, const cha
 	add_text(m, body, "format", format);
 }
 
-/* The order says what each text is: the titles come first. */
+static void add_document(struct maker *m, cJSON *bodies, const char *name)
+{
+	const struct info_build_options *options = m->draft->options;
+	cJSON *choice = NULL;
+
+	for (uint32_t i = 0; i < options->language_count && !m->failed; i++) {
+		char file[DRAFT_PAGE_NAME_BYTES];
+		char *html;
+
+		draft_name_page(m->draft, name, i, file);
+		if (draft_read_document(m->draft, file, &html) < 0)
+			m->failed = true;
+		add_choice(m, &choice, bodies, options->languages[i], "text/html", html);
+		free(html);
+	}
+}
+
+/* The order says what each text is: the titles come first, further documents last. */
 static void add_texts(struct maker *m, cJSON *annotation, const cJSON *part,
 		      const struct draft_part *read)
 {
 	const struct info_build_options *options = m->draft->options;
-	cJSON *bodies = add_array(m, annotation, "body");
 	static const char *const keys[] = { "title", "caption" };
+	cJSON *bodies = add_array(m, annotation, "body"), *page = NULL;
 
 	for (size_t k = 0; k < G_N_ELEMENTS(keys); k++) {
 		cJSON *choice = NULL;
@@ -282,10 +300,11 @@ static void add_texts(struct maker *m, cJSON *annotation, const cJSON *part,
 				   cJSON_GetStringValue(
 					   member(member(part, keys[k]), options->languages[i])));
 	}
-	for (cJSON *choice = NULL; bodies; bodies = NULL)
-		for (uint32_t i = 0; i < options->language_count && !m->failed; i++)
-			add_choice(m, &choice, bodies, options->languages[i], "text/html",
-				   read->pages[i].html);
+	for (uint32_t i = 0; i < options->language_count && !m->failed; i++)
+		add_choice(m, &page, bodies, options->languages[i], "text/html",
+			   read->pages[i].html);
+	for (uint32_t n = 0; n < read->document_count && !m->failed; n++)
+		add_document(m, bodies, read->documents[n]);
 }
 
 /* The anchor as written, with the digits of parts.json; that of a region without one is computed.

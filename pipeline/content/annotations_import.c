@@ -15,6 +15,7 @@
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/annotations_write.h"
 #include "pipeline/content/draft.h"
+#include "pipeline/content/info_parts.h"
 #include "pipeline/import/json.h"
 #include "pipeline/import/manifest.h"
 
@@ -155,24 +156,62 @@ static void read_credits(struct importer *im, const cJSON *from, cJSON *to)
 
 /* ---- the body */
 
-static void add_page(struct importer *im, const char *language, const char *html)
+/* A document may come with each part that has it; its text is the same then. */
+static void add_page(struct importer *im, const char *name, const char *language, const char *html,
+		     bool is_document)
 {
-	struct page_file page = { .html = html };
+	struct page_file page = { .html = html, .is_document = is_document };
 
 	if (ARRAY_RESERVE(im->pages, im->page_room, im->page_count + 1, UINT32_MAX) < 0) {
 		im->failed = true;
 		return;
 	}
-	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", json_string(im->part, "id"),
-		 language);
-	for (uint32_t i = 0; i < im->page_count; i++)
-		if (strcmp(im->pages[i].name, page.name) == 0) {
+	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", name, language);
+	for (uint32_t i = 0; i < im->page_count; i++) {
+		const struct page_file *other = &im->pages[i];
+
+		if (strcmp(other->name, page.name) != 0)
+			continue;
+		if (strcmp(other->html, html) != 0 || !(is_document || other->is_document))
 			diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
-					"annotation \"%.80s\": two pages in \"%.16s\": leave one",
-					item_id(im), language);
-			return;
-		}
+					"annotation \"%.80s\": two texts for %s: leave one",
+					item_id(im), page.name);
+		return;
+	}
 	im->pages[im->page_count++] = page;
+}
+
+/* Takes "pages/NAME.LANGUAGE.html" apart. Returns false for other ids, of bodies that are the
+ * part's own page. */
+static bool is_document(const char *id, const char *language, char name[INFO_ID_BYTES_MAX + 1])
+{
+	char expected[DRAFT_PAGE_NAME_BYTES];
+	const char *dot;
+
+	if (!id || strncmp(id, "pages/", 6) != 0)
+		return false;
+	dot = strchr(id + 6, '.');
+	if (!dot || dot - (id + 6) > INFO_ID_BYTES_MAX)
+		return false;
+	snprintf(name, INFO_ID_BYTES_MAX + 1, "%.*s", (int)(dot - (id + 6)), id + 6);
+	snprintf(expected, sizeof(expected), "pages/%s.%.16s.html", name, language);
+	return draft_is_id(name) && strcmp(id, expected) == 0;
+}
+
+/* Notes that the part has the document. */
+static void name_document(struct importer *im, const char *name)
+{
+	cJSON *list = cJSON_GetObjectItemCaseSensitive(im->part, "documents");
+
+	if (!list) {
+		add(im, im->part, "documents", cJSON_CreateArray());
+		list = cJSON_GetObjectItemCaseSensitive(im->part, "documents");
+	}
+	for (const cJSON *one = list ? list->child : NULL; one; one = one->next)
+		if (strcmp(one->valuestring, name) == 0)
+			return;
+	if (list && !cJSON_AddItemToArray(list, cJSON_CreateString(name)))
+		im->failed = true;
 }
 
 static const char *key_of_purpose(const char *purpose)
@@ -201,6 +240,7 @@ static void read_body(struct importer *im, const cJSON *body)
 		cJSON_GetStringValue(json_first(cJSON_GetObjectItemCaseSensitive(body, "purpose")));
 	const char *format = json_string(body, "format");
 	const char *key = key_of_purpose(purpose ? purpose : "describing");
+	char document[INFO_ID_BYTES_MAX + 1];
 
 	if (!language)
 		language = im->language;
@@ -220,7 +260,13 @@ static void read_body(struct importer *im, const cJSON *body)
 		return;
 	}
 	if (format && strcmp(format, "text/html") == 0) {
-		add_page(im, language, value);
+		if (is_document(json_string(body, "id"), language, document)) {
+			add_page(im, document, language, value, true);
+			name_document(im, document);
+		} else {
+			add_page(im, json_string(im->part, "id"), language, value, false);
+			im->has_page = true;
+		}
 		return;
 	}
 	if (cJSON_HasObjectItem(object_of(im, im->part, key), language))
@@ -234,8 +280,8 @@ static void read_body(struct importer *im, const cJSON *body)
 static void read_bodies(struct importer *im)
 {
 	const cJSON *bodies = cJSON_GetObjectItemCaseSensitive(im->item, "body");
-	const uint32_t pages_before = im->page_count;
 
+	im->has_page = false;
 	for (const cJSON *body = json_first(bodies); body && !im->failed;
 	     body = json_next(bodies, body))
 		read_body(im, body);
@@ -249,7 +295,7 @@ static void read_bodies(struct importer *im)
 			"annotation \"%.80s\" has no title: add a TextualBody with \"purpose\": "
 			"\"identifying\"",
 			item_id(im));
-	if (im->page_count == pages_before)
+	if (!im->has_page)
 		add(im, im->part, "page", cJSON_CreateFalse());
 }
 

@@ -7,8 +7,9 @@
 #include "pipeline/content/draft.h"
 
 struct page_file {
-	char name[INFO_ID_BYTES_MAX + 40]; /* for example "pages/gate.en.html" */
-	const char *html;                  /* borrowed from the file's JSON */
+	char name[DRAFT_PAGE_NAME_BYTES]; /* for example "pages/gate.en.html" */
+	const char *html;                 /* borrowed from the file's JSON */
+	bool is_document;                 /* came as one; also another part's page may be one */
 };
 
 struct importer {
@@ -30,6 +31,7 @@ struct importer {
 	const cJSON *item;
 	unsigned line;
 	cJSON *part;
+	bool has_page; /* of its own */
 };
 
 /* Returns whether the folder has no parts.json, tours.json and pages yet; otherwise it says so.

@@ -12,11 +12,11 @@ struct cJSON;
 
 enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
-enum { DRAFT_SPOKEN_NAME_BYTES = INFO_ID_BYTES_MAX + 40 };
+enum { DRAFT_PAGE_NAME_BYTES = INFO_ID_BYTES_MAX + 40 }; /* "pages/ID.LANGUAGE.html" and the like */
 
 /* The spoken text of a page. */
 struct draft_spoken {
-	char name[DRAFT_SPOKEN_NAME_BYTES]; /* of the file, in the folder */
+	char name[DRAFT_PAGE_NAME_BYTES]; /* of the file, in the folder */
 	struct hash hash;
 	uint32_t size, duration_ms; /* 0: there is none */
 	struct cues cues;
@@ -123,6 +123,10 @@ must_check int draft_read_json(struct draft *draft, const char *file, const char
 /* Reads a text of the folder into *out, or what the options have instead. A negative errno, as of
  * buffer_read_file. */
 must_check int draft_read_text(const struct draft *draft, const char *name, struct buffer *out);
+
+/* Writes the name of a page in a language of the release, such as "pages/gate.en.html". */
+void draft_name_page(const struct draft *draft, const char *name, uint32_t language,
+		     char file[DRAFT_PAGE_NAME_BYTES]);
 
 /* Builds the path of a file in the folder. Returns false if it does not fit. */
 bool draft_path(const struct draft *draft, char *path, size_t path_bytes, const char *name);

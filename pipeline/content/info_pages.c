@@ -287,10 +287,10 @@ static int compile_page(struct page_check *check, const struct bytes *texts, uin
 	return rc == -ENOMEM ? rc : 0;
 }
 
-static void name_page(const struct draft *draft, const char *name, uint32_t language,
-		      char file[INFO_ID_BYTES_MAX + 40])
+void draft_name_page(const struct draft *draft, const char *name, uint32_t language,
+		     char file[DRAFT_PAGE_NAME_BYTES])
 {
-	snprintf(file, INFO_ID_BYTES_MAX + 40, "pages/%.64s.%.16s.html", name,
+	snprintf(file, DRAFT_PAGE_NAME_BYTES, "pages/%.64s.%.16s.html", name,
 		 draft->options->languages[language]);
 }
 
@@ -298,11 +298,11 @@ static void name_page(const struct draft *draft, const char *name, uint32_t lang
 static int read_document(struct page_check *of, const char *name, uint32_t language,
 			 struct draft_page *out)
 {
-	char file[INFO_ID_BYTES_MAX + 40];
+	char file[DRAFT_PAGE_NAME_BYTES];
 	struct page_check check = { of->draft, out, file, 0 };
 	int rc;
 
-	name_page(of->draft, name, language, file);
+	draft_name_page(of->draft, name, language, file);
 	rc = read_page_file(&check);
 	if (rc == 0 && out->html)
 		rc = check_page(&check);
@@ -326,12 +326,12 @@ static int read_part_page(struct draft *draft, struct draft_part *part, uint32_t
 	struct draft_page further[DRAFT_DOCUMENTS_MAX] = { 0 };
 	struct bytes texts[1 + DRAFT_DOCUMENTS_MAX];
 	struct draft_page *page = &part->pages[language];
-	char file[INFO_ID_BYTES_MAX + 40];
+	char file[DRAFT_PAGE_NAME_BYTES];
 	struct page_check check = { draft, page, file, 0 };
 	uint32_t count = 0;
 	int rc;
 
-	name_page(draft, part->id, language, file);
+	draft_name_page(draft, part->id, language, file);
 	rc = read_page_file(&check);
 	if (rc == 0 && page->html) {
 		texts[count++] = (struct bytes){ (const uint8_t *)page->html, page->size };
@@ -380,6 +380,25 @@ static int read_part_pages(struct draft *draft, struct draft_part *part)
 					part->id, part->documents[n], part->documents[n],
 					draft->options->languages[0]);
 	return 0;
+}
+
+int draft_read_document(const struct draft *draft, const char *file, char **html)
+{
+	struct buffer text;
+	int rc;
+
+	*html = NULL;
+	buffer_init(&text, HTML_BYTES_MAX + 1);
+	rc = draft_read_text(draft, file, &text);
+	if (rc == 0) {
+		buffer_put_u8(&text, 0);
+		rc = text.error;
+	}
+	if (rc == 0)
+		*html = (char *)text.data; /* taken */
+	else
+		buffer_finish(&text);
+	return rc == -ENOENT ? 0 : rc;
 }
 
 static bool has_known_ending(const char *ending)

@@ -8,4 +8,8 @@
  * because pages may link to both. */
 must_check int draft_read_pages(struct draft *draft);
 
+/* Reads a document that draft_read_pages has checked, by the name of its file. *html is owned by
+ * the caller; NULL: it is not in that language, or after a failure. */
+must_check int draft_read_document(const struct draft *draft, const char *file, char **html);
+
 #endif

@@ -11,9 +11,9 @@
 #include "pipeline/content/spoken_sound.h"
 
 static void name_file(const struct draft *draft, const struct draft_part *part, uint32_t language,
-		      const char *ending, char file[DRAFT_SPOKEN_NAME_BYTES])
+		      const char *ending, char file[DRAFT_PAGE_NAME_BYTES])
 {
-	snprintf(file, DRAFT_SPOKEN_NAME_BYTES, "pages/%.64s.%.16s.%s", part->id,
+	snprintf(file, DRAFT_PAGE_NAME_BYTES, "pages/%.64s.%.16s.%s", part->id,
 		 draft->options->languages[language], ending);
 }
 
@@ -99,7 +99,7 @@ static int read_words(struct draft *draft, struct draft_spoken *spoken, const ch
 int spoken_text_read(struct draft *draft, struct draft_part *part, uint32_t language)
 {
 	struct draft_spoken *spoken = &part->pages[language].spoken;
-	char words[DRAFT_SPOKEN_NAME_BYTES], page[DRAFT_SPOKEN_NAME_BYTES];
+	char words[DRAFT_PAGE_NAME_BYTES], page[DRAFT_PAGE_NAME_BYTES];
 	int rc;
 
 	name_file(draft, part, language, "opus", spoken->name);

@@ -23,6 +23,26 @@ collection = json.load(open(sys.argv[1]))
 assert collection["total"] == len(collection["first"]["items"]) > 0
 P
 
+# Further documents come back, one of two parts once, also where a part has no page of its own.
+mkdir -p "$work/documents/pages" "$work/out2" "$work/again2"
+cat >"$work/documents/parts.json" <<'P'
+{"parts": [
+ {"id": "gate", "anchor": [1, 2, 3], "title": {"en": "Gate", "fr": "Porte"}, "documents": ["repair", "kings"]},
+ {"id": "stair", "anchor": [4, 5, 6], "title": {"en": "Stair"}, "page": false, "documents": ["kings", "gate"]}]}
+P
+for page in gate.en gate.fr repair.fr kings.en kings.fr; do
+	echo "<p>About $page</p>" >"$work/documents/pages/$page.html"
+done
+"$gopura" annotations export "$work/documents" --out "$work/out2/all.jsonld"
+"$gopura" annotations import "$work/out2/all.jsonld" --into "$work/documents-copy"
+"$gopura" annotations export "$work/documents-copy" --out "$work/again2/all.jsonld"
+cmp "$work/out2/all.jsonld" "$work/again2/all.jsonld" || fail "the round trip lost a document"
+diff -r "$work/documents/pages" "$work/documents-copy/pages" || fail "documents came back changed"
+sed '0,/About kings.en/s//Other/' "$work/out2/all.jsonld" >"$work/out2/two.jsonld"
+! "$gopura" annotations import "$work/out2/two.jsonld" --into "$work/two" 2>"$work/two.log" ||
+	fail "a document with two texts was taken"
+grep -q 'two.jsonld:.*two texts for pages/kings.en.html' "$work/two.log" || fail "not said which: $(cat "$work/two.log")"
+
 cat >"$work/foreign.jsonld" <<'P'
 {"type": "AnnotationPage", "items": [
  {"id": "https://example.org/1", "type": "Annotation", "bodyValue": "a note",
@@ -42,11 +62,14 @@ printf '[model]\nscans = a.glb b.glb\n' >"$work/temple/temple.ini"
 touch "$work/temple/a.glb" "$work/temple/b.glb"
 cat >"$work/temple/parts.json" <<'P'
 {"parts": [{"id": "eye", "anchor": [1, 2, 3], "page": false, "title": {"en": "Eye", "es": "Ojo"},
- "caption": {"en": "It looks east."}}]}
+ "caption": {"en": "It looks east."}, "documents": ["paint"]}]}
 P
+mkdir -p "$work/temple/pages"
+echo '<p>It was painted.</p>' >"$work/temple/pages/paint.en.html"
 "$gopura" annotations export "$work/temple" --iiif --base https://example.org/t --out "$work/temple/scene.json"
 "$gopura" annotations import "$work/temple/scene.json" --into "$work/iiif"
 grep -q '"It looks east."' "$work/iiif/parts.json" || fail "the caption did not come back"
+grep -q 'It was painted.' "$work/iiif/pages/eye.en.html" || fail "the document did not come back as text of the page"
 theirs=../shared/conformance/iiif3d/manifests
 if [ -d "$theirs" ]; then
 	python3 - "$work/temple/scene.json" "$theirs" <<'P'
