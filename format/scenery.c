@@ -1,0 +1,240 @@
+/* The rules that scenery keeps, which encoder and decoder check. */
+#include "format/scenery.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/utf8.h"
+
+/* Places, sizes and scales beyond this are mistakes. */
+static const float far_m = 1e6f;
+static const float longest_s = 3600;
+
+uint32_t scenery_width(enum scenery_target target)
+{
+	static const uint8_t widths[SCENERY_TARGETS] = {
+		[SCENERY_MOVE] = 3, [SCENERY_TURN] = 4, [SCENERY_SCALE] = 3, [SCENERY_OPACITY] = 1
+	};
+
+	return widths[target];
+}
+
+uint32_t scenery_triangles(const struct scenery *scenery)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = 0; i < scenery->mesh_count; i++)
+		count += scenery->meshes[i].triangle_count;
+	return count;
+}
+
+/* ---- nodes and meshes */
+
+static bool are_near(const float *numbers, int count)
+{
+	for (int i = 0; i < count; i++)
+		if (!(fabsf(numbers[i]) <= far_m))
+			return false;
+	return true;
+}
+
+static bool is_turn(const float turn[4])
+{
+	float square = 0;
+
+	for (int i = 0; i < 4; i++)
+		square += turn[i] * turn[i];
+	return fabsf(square - 1) < 1e-3f;
+}
+
+static bool place_is_sane(const struct scenery_place *place)
+{
+	return are_near(place->move_m, 3) && are_near(place->scale, 3) &&
+	       are_near(place->centre_m, 3) && is_turn(place->turn) && is_turn(place->stretch);
+}
+
+static bool nodes_are_sane(const struct scenery *scenery)
+{
+	uint8_t depth[SCENERY_NODES_MAX];
+
+	if (scenery->node_count > SCENERY_NODES_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->node_count; i++) {
+		const struct scenery_node *node = &scenery->nodes[i];
+		bool is_root = node->parent == SCENERY_NONE;
+
+		if (!is_root && node->parent >= i)
+			return false;
+		if (node->layer != SCENERY_NONE &&
+		    (!is_root || node->layer >= scenery->layer_count))
+			return false;
+		depth[i] = is_root ? 1 : (uint8_t)(depth[node->parent] + 1);
+		if (depth[i] > SCENERY_DEPTH_MAX || !place_is_sane(&node->place))
+			return false;
+	}
+	return true;
+}
+
+static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mesh *mesh)
+{
+	if (mesh->node >= scenery->node_count || !are_near(mesh->origin_m, 3) ||
+	    !(mesh->step_m > 0 && mesh->step_m <= far_m) || mesh->vertex_count < 3 ||
+	    mesh->vertex_count > SCENERY_VERTICES_MAX || mesh->triangle_count < 1 ||
+	    mesh->triangle_count > SCENERY_TRIANGLES_MAX)
+		return false;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int k = 0; k < 3; k++)
+			if (mesh->triangles[t][k] >= mesh->vertex_count)
+				return false;
+	return true;
+}
+
+static bool meshes_are_sane(const struct scenery *scenery)
+{
+	uint32_t triangles = 0;
+
+	if (scenery->mesh_count > SCENERY_MESHES_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
+		if (!mesh_is_sane(scenery, &scenery->meshes[i]))
+			return false;
+		triangles += scenery->meshes[i].triangle_count;
+		if (triangles > SCENERY_ALL_TRIANGLES_MAX)
+			return false;
+	}
+	return true;
+}
+
+/* ---- motions */
+
+static bool values_are_sane(const struct scenery_track *track, const float *values)
+{
+	const uint32_t width = scenery_width(track->target);
+
+	for (uint32_t k = 0; k < track->key_count; k++) {
+		const float *value = &values[k * width];
+
+		if (!are_near(value, (int)width) ||
+		    (track->target == SCENERY_TURN && !is_turn(value)) ||
+		    (track->target == SCENERY_OPACITY && (value[0] < 0 || value[0] > 1)))
+			return false;
+	}
+	return true;
+}
+
+/* Checks a track whose numbers begin at *next. */
+static bool track_is_sane(const struct scenery *scenery, const struct scenery_track *track,
+			  uint32_t *next)
+{
+	float before = 0;
+	uint32_t left = scenery->number_count - *next, each;
+
+	if (track->node >= scenery->node_count || (unsigned)track->target >= SCENERY_TARGETS ||
+	    track->first != *next || track->key_count < 1)
+		return false;
+	each = 1 + scenery_width(track->target);
+	if (track->key_count > left / each)
+		return false;
+	for (uint32_t k = 0; k < track->key_count; k++) {
+		float time = scenery->numbers[track->first + k];
+
+		if (!(time >= before && time <= 1))
+			return false;
+		before = time;
+	}
+	*next += track->key_count * each;
+	return values_are_sane(track, &scenery->numbers[track->first + track->key_count]);
+}
+
+static bool motions_are_sane(const struct scenery *scenery)
+{
+	uint32_t track = 0, number = 0;
+
+	if (scenery->motion_count > SCENERY_MOTIONS_MAX ||
+	    scenery->track_count > SCENERY_TRACKS_MAX ||
+	    scenery->number_count > SCENERY_NUMBERS_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->motion_count; i++) {
+		const struct scenery_motion *motion = &scenery->motions[i];
+
+		if ((motion->touched != SCENERY_NONE && motion->touched >= scenery->node_count) ||
+		    !(motion->duration_s > 0 && motion->duration_s <= longest_s) ||
+		    motion->first_track != track || motion->track_count < 1 ||
+		    motion->track_count > scenery->track_count - track ||
+		    (motion->touched == SCENERY_NONE && !motion->loops))
+			return false;
+		track += motion->track_count;
+	}
+	if (track != scenery->track_count)
+		return false;
+	for (track = 0; track < scenery->track_count; track++)
+		if (!track_is_sane(scenery, &scenery->tracks[track], &number))
+			return false;
+	return number == scenery->number_count;
+}
+
+/* ---- layers */
+
+static bool text_is_sane(const char *text, size_t bytes)
+{
+	const char *end = memchr(text, '\0', bytes);
+	size_t size = 1;
+
+	if (!end || end == text)
+		return false;
+	for (; text < end && size > 0; text += size)
+		size = utf8_bytes(text, (size_t)(end - text));
+	return size > 0;
+}
+
+static bool title_is_sane(const struct scenery_title *title)
+{
+	return text_is_sane(title->language, sizeof(title->language)) &&
+	       text_is_sane(title->text, sizeof(title->text));
+}
+
+static bool layers_are_sane(const struct scenery *scenery)
+{
+	uint32_t next = 0;
+
+	if (scenery->layer_count > SCENERY_LAYERS_MAX || scenery->layer_count == 1 ||
+	    scenery->title_count > SCENERY_TITLES_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->layer_count; i++) {
+		const struct scenery_layer *layer = &scenery->layers[i];
+
+		if (layer->first_title != next || layer->title_count < 1 ||
+		    layer->title_count > scenery->title_count - next)
+			return false;
+		next += layer->title_count;
+	}
+	for (uint32_t i = 0; i < scenery->title_count; i++)
+		if (!title_is_sane(&scenery->titles[i]))
+			return false;
+	return next == scenery->title_count;
+}
+
+bool scenery_is_sane(const struct scenery *scenery)
+{
+	return nodes_are_sane(scenery) && meshes_are_sane(scenery) && motions_are_sane(scenery) &&
+	       layers_are_sane(scenery);
+}
+
+void scenery_finish(struct scenery *scenery)
+{
+	if (!scenery)
+		return;
+	for (uint32_t i = 0; scenery->meshes && i < scenery->mesh_count; i++) {
+		free(scenery->meshes[i].vertices);
+		free(scenery->meshes[i].triangles);
+	}
+	free(scenery->nodes);
+	free(scenery->meshes);
+	free(scenery->motions);
+	free(scenery->tracks);
+	free(scenery->numbers);
+	free(scenery->layers);
+	free(scenery->titles);
+	*scenery = (struct scenery){ 0 };
+}

@@ -1,0 +1,130 @@
+/* Scenery: what stands beside a scan and is no part of it. A reconstructed roof, a door that opens
+ * at a touch. One object of a release holds all of it: small meshes, the nodes that place them, the
+ * motions that move nodes, and layers, of which a visitor sees one at a time. The form is the same
+ * whichever file the scenery came from. docs/scenery.md describes the bytes. */
+#ifndef GOPURA_FORMAT_SCENERY_H
+#define GOPURA_FORMAT_SCENERY_H
+
+#include <stdbool.h>
+
+#include "base/bytes.h"
+
+enum {
+	SCENERY_NODES_MAX = 4096,
+	SCENERY_DEPTH_MAX = 64, /* of nodes below each other */
+	SCENERY_MESHES_MAX = 4096,
+	SCENERY_VERTICES_MAX = 65535,        /* of a mesh */
+	SCENERY_TRIANGLES_MAX = 1 << 18,     /* of a mesh */
+	SCENERY_ALL_TRIANGLES_MAX = 1 << 19, /* of all meshes */
+	SCENERY_MOTIONS_MAX = 256,
+	SCENERY_TRACKS_MAX = 1024,     /* of all motions */
+	SCENERY_NUMBERS_MAX = 1 << 20, /* of all tracks */
+	SCENERY_LAYERS_MAX = 8,
+	SCENERY_TITLES_MAX = 512,    /* of all layers */
+	SCENERY_LANGUAGE_BYTES = 12, /* with the final zero; so is the next */
+	SCENERY_TITLE_BYTES = 128,
+};
+
+#define SCENERY_NONE      UINT32_MAX
+#define SCENERY_PLACE_MAX 65535
+
+/* Where a node puts what is below it, as VRML97 6.52 has it: a point is moved by -centre, turned by
+ * -stretch, scaled, turned by stretch, turned, moved by centre, moved. glTF's nodes have no centre
+ * and no stretch. */
+struct scenery_place {
+	float move_m[3];
+	float turn[4]; /* unit quaternion x y z w; stretch too */
+	float scale[3];
+	float centre_m[3];
+	float stretch[4]; /* axes of the scale */
+};
+
+struct scenery_node {
+	uint32_t parent; /* a node before this one, or SCENERY_NONE */
+	/* Of a node without parent: its layer, or SCENERY_NONE, which is always shown. All others
+	 * are in the layer of their parent and have SCENERY_NONE here. */
+	uint32_t layer;
+	struct scenery_place place;
+};
+
+struct scenery_vertex {
+	uint16_t place[3]; /* metres in the node = origin_m + step_m * place */
+	int8_t normal[2];  /* format/normal.h */
+	uint8_t rgb[3];    /* sRGB */
+};
+
+struct scenery_mesh {
+	uint32_t node;
+	float origin_m[3], step_m;
+	bool has_two_sides; /* its back is seen too; else it is left out */
+	uint32_t vertex_count, triangle_count;
+	struct scenery_vertex *vertices; /* owned */
+	uint16_t (*triangles)[3];        /* owned; counter-clockwise seen from outside */
+};
+
+/* What a track sets, and the numbers of one key. */
+enum scenery_target {
+	SCENERY_MOVE,    /* 3: move_m */
+	SCENERY_TURN,    /* 4: turn */
+	SCENERY_SCALE,   /* 3: scale */
+	SCENERY_OPACITY, /* 1: 0 is invisible, 1 solid; for the node and all below */
+	SCENERY_TARGETS
+};
+
+/* The values of one node over a motion. Between two keys, numbers change evenly. */
+struct scenery_track {
+	uint32_t node;
+	enum scenery_target target;
+	uint32_t key_count; /* at least 1 */
+	/* Index into numbers: first the times of the keys as shares of the motion, ascending from
+	 * 0 to 1, then their values. */
+	uint32_t first;
+};
+
+struct scenery_motion {
+	/* What starts it: a touch on a mesh of this node or below; SCENERY_NONE: it runs always. */
+	uint32_t touched;
+	float duration_s;                  /* above 0, at most an hour */
+	bool loops;                        /* begins again until touched again, or for ever */
+	uint32_t first_track, track_count; /* at least 1 */
+};
+
+struct scenery_title {
+	char language[SCENERY_LANGUAGE_BYTES]; /* as in temple.ini */
+	char text[SCENERY_TITLE_BYTES];        /* UTF-8 */
+};
+
+/* One of several states of the site. The first is shown until a visitor chooses another. */
+struct scenery_layer {
+	uint32_t first_title, title_count; /* at least 1; the first is in the default language */
+};
+
+/* The arrays are owned. Zeroed is no scenery. */
+struct scenery {
+	uint32_t node_count, mesh_count, motion_count, track_count, number_count;
+	uint32_t layer_count; /* 0, or at least 2 */
+	uint32_t title_count;
+	struct scenery_node *nodes;
+	struct scenery_mesh *meshes;
+	struct scenery_motion *motions;
+	struct scenery_track *tracks; /* motion by motion */
+	float *numbers;               /* track by track */
+	struct scenery_layer *layers;
+	struct scenery_title *titles; /* layer by layer */
+};
+
+/* Returns how many numbers a key of the target has. */
+uint32_t scenery_width(enum scenery_target target);
+/* Returns whether the scenery keeps all rules of this header. */
+bool scenery_is_sane(const struct scenery *scenery);
+/* Returns the triangles of all meshes. */
+uint32_t scenery_triangles(const struct scenery *scenery);
+
+/* Appends the object. Returns -EINVAL if the scenery breaks a rule above, -EFBIG or -ENOMEM. */
+must_check int scenery_encode(struct buffer *out, const struct scenery *scenery);
+/* The caller ends *out with scenery_finish(); it is zeroed on failure. Returns -EBADMSG for
+ * anything that the encoder cannot have written, or -ENOMEM. */
+must_check int scenery_decode(struct scenery *out, struct bytes object);
+void scenery_finish(struct scenery *scenery); /* NULL and zeroed are fine */
+
+#endif

@@ -1,0 +1,353 @@
+/* Encodes and decodes scenery: a header and one zstd frame. */
+#include "format/scenery.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <zstd.h>
+
+enum {
+	VERSION = 1,
+	ZSTD_LEVEL = 19,
+	HEADER_BYTES = 9,
+	RAW_BYTES_MAX = 32 << 20,
+	OBJECT_MAX = 16 << 20,
+	/* the bytes of one: */
+	NODE_BYTES = 2 * 4 + 17 * 4,
+	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4,
+	VERTEX_BYTES = 11,
+	TRIANGLE_BYTES = 6,
+	MOTION_BYTES = 4 + 4 + 1 + 4,
+	TRACK_BYTES = 4 + 1 + 4,
+	LAYER_BYTES = 1,
+	TITLE_BYTES = 4,
+};
+
+static const char magic[4] = { 'G', 'P', 's', 'y' };
+
+/* ---- numbers, in the same order both ways */
+
+static void put_floats(struct buffer *out, const float *numbers, uint32_t count)
+{
+	for (uint32_t i = 0; i < count; i++)
+		buffer_put_f32(out, numbers[i]);
+}
+
+static void get_floats(struct reader *in, float *numbers, uint32_t count)
+{
+	for (uint32_t i = 0; i < count; i++)
+		numbers[i] = reader_f32(in);
+}
+
+static bool get_flag(struct reader *in)
+{
+	uint8_t flag = reader_u8(in);
+
+	in->failed = in->failed || flag > 1;
+	return flag;
+}
+
+static void put_node(struct buffer *out, const struct scenery_node *node)
+{
+	buffer_put_u32(out, node->parent);
+	buffer_put_u32(out, node->layer);
+	put_floats(out, node->place.move_m, 3);
+	put_floats(out, node->place.turn, 4);
+	put_floats(out, node->place.scale, 3);
+	put_floats(out, node->place.centre_m, 3);
+	put_floats(out, node->place.stretch, 4);
+}
+
+static void get_node(struct reader *in, struct scenery_node *node)
+{
+	node->parent = reader_u32(in);
+	node->layer = reader_u32(in);
+	get_floats(in, node->place.move_m, 3);
+	get_floats(in, node->place.turn, 4);
+	get_floats(in, node->place.scale, 3);
+	get_floats(in, node->place.centre_m, 3);
+	get_floats(in, node->place.stretch, 4);
+}
+
+/* Numbers of one kind stand together, which compresses better. */
+static void put_mesh(struct buffer *out, const struct scenery_mesh *mesh)
+{
+	const struct scenery_vertex *vertices = mesh->vertices;
+
+	buffer_put_u32(out, mesh->node);
+	put_floats(out, mesh->origin_m, 3);
+	buffer_put_f32(out, mesh->step_m);
+	buffer_put_u8(out, mesh->has_two_sides);
+	buffer_put_u32(out, mesh->vertex_count);
+	buffer_put_u32(out, mesh->triangle_count);
+	for (int k = 0; k < 3; k++)
+		for (uint32_t v = 0; v < mesh->vertex_count; v++)
+			buffer_put_u16(out, vertices[v].place[k]);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		buffer_put(out, vertices[v].normal, 2);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		buffer_put(out, vertices[v].rgb, 3);
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int k = 0; k < 3; k++)
+			buffer_put_u16(out, mesh->triangles[t][k]);
+}
+
+static int get_mesh(struct reader *in, struct scenery_mesh *mesh)
+{
+	uint64_t needed;
+	struct bytes colours;
+
+	mesh->node = reader_u32(in);
+	get_floats(in, mesh->origin_m, 3);
+	mesh->step_m = reader_f32(in);
+	mesh->has_two_sides = get_flag(in);
+	mesh->vertex_count = reader_u32(in);
+	mesh->triangle_count = reader_u32(in);
+	needed = (uint64_t)mesh->vertex_count * VERTEX_BYTES +
+		 (uint64_t)mesh->triangle_count * TRIANGLE_BYTES;
+	if (in->failed || needed > reader_left(in))
+		return -EBADMSG;
+	mesh->vertices = calloc((size_t)mesh->vertex_count + 1, sizeof(*mesh->vertices));
+	mesh->triangles = calloc((size_t)mesh->triangle_count + 1, sizeof(*mesh->triangles));
+	if (!mesh->vertices || !mesh->triangles)
+		return -ENOMEM;
+	for (int k = 0; k < 3; k++)
+		for (uint32_t v = 0; v < mesh->vertex_count; v++)
+			mesh->vertices[v].place[k] = reader_u16(in);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		for (int k = 0; k < 2; k++)
+			mesh->vertices[v].normal[k] = (int8_t)reader_u8(in);
+	colours = reader_bytes(in, (size_t)mesh->vertex_count * 3);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++)
+		memcpy(mesh->vertices[v].rgb, &colours.data[3 * v], 3);
+	for (uint32_t t = 0; t < mesh->triangle_count; t++)
+		for (int k = 0; k < 3; k++)
+			mesh->triangles[t][k] = reader_u16(in);
+	return 0;
+}
+
+static void put_motions(struct buffer *out, const struct scenery *scenery)
+{
+	for (uint32_t i = 0; i < scenery->motion_count; i++) {
+		const struct scenery_motion *motion = &scenery->motions[i];
+
+		buffer_put_u32(out, motion->touched);
+		buffer_put_f32(out, motion->duration_s);
+		buffer_put_u8(out, motion->loops);
+		buffer_put_u32(out, motion->track_count);
+	}
+	for (uint32_t i = 0; i < scenery->track_count; i++) {
+		const struct scenery_track *track = &scenery->tracks[i];
+
+		buffer_put_u32(out, track->node);
+		buffer_put_u8(out, (uint8_t)track->target);
+		buffer_put_u32(out, track->key_count);
+	}
+	put_floats(out, scenery->numbers, scenery->number_count);
+}
+
+static int get_motions(struct reader *in, struct scenery *scenery)
+{
+	uint32_t next = 0;
+
+	for (uint32_t i = 0; i < scenery->motion_count; i++) {
+		struct scenery_motion *motion = &scenery->motions[i];
+
+		motion->touched = reader_u32(in);
+		motion->duration_s = reader_f32(in);
+		motion->loops = get_flag(in);
+		motion->first_track = next;
+		motion->track_count = reader_u32(in);
+		if (motion->track_count > SCENERY_TRACKS_MAX)
+			return -EBADMSG;
+		next += motion->track_count;
+	}
+	next = 0;
+	for (uint32_t i = 0; i < scenery->track_count; i++) {
+		struct scenery_track *track = &scenery->tracks[i];
+
+		track->node = reader_u32(in);
+		track->target = reader_u8(in);
+		track->first = next;
+		track->key_count = reader_u32(in);
+		if ((unsigned)track->target >= SCENERY_TARGETS ||
+		    track->key_count > SCENERY_NUMBERS_MAX)
+			return -EBADMSG;
+		next += track->key_count * (1 + scenery_width(track->target));
+	}
+	get_floats(in, scenery->numbers, scenery->number_count);
+	return 0;
+}
+
+static void put_layers(struct buffer *out, const struct scenery *scenery)
+{
+	for (uint32_t i = 0; i < scenery->layer_count; i++)
+		buffer_put_u8(out, (uint8_t)scenery->layers[i].title_count);
+	for (uint32_t i = 0; i < scenery->title_count; i++) {
+		buffer_put_string(out, scenery->titles[i].language);
+		buffer_put_string(out, scenery->titles[i].text);
+	}
+}
+
+static void get_layers(struct reader *in, struct scenery *scenery)
+{
+	uint32_t next = 0;
+
+	for (uint32_t i = 0; i < scenery->layer_count; i++) {
+		scenery->layers[i].first_title = next;
+		scenery->layers[i].title_count = reader_u8(in);
+		next += scenery->layers[i].title_count;
+	}
+	for (uint32_t i = 0; i < scenery->title_count; i++) {
+		struct scenery_title *title = &scenery->titles[i];
+
+		reader_string(in, title->language, sizeof(title->language));
+		reader_string(in, title->text, sizeof(title->text));
+	}
+}
+
+/* ---- the whole */
+
+static void put_raw(struct buffer *out, const struct scenery *scenery)
+{
+	buffer_put_u32(out, scenery->node_count);
+	buffer_put_u32(out, scenery->mesh_count);
+	buffer_put_u32(out, scenery->motion_count);
+	buffer_put_u32(out, scenery->track_count);
+	buffer_put_u32(out, scenery->number_count);
+	buffer_put_u32(out, scenery->layer_count);
+	buffer_put_u32(out, scenery->title_count);
+	for (uint32_t i = 0; i < scenery->node_count; i++)
+		put_node(out, &scenery->nodes[i]);
+	for (uint32_t i = 0; i < scenery->mesh_count; i++)
+		put_mesh(out, &scenery->meshes[i]);
+	put_motions(out, scenery);
+	put_layers(out, scenery);
+}
+
+int scenery_encode(struct buffer *out, const struct scenery *scenery)
+{
+	struct buffer raw;
+	uint8_t *packed = NULL;
+	size_t size = 0, room;
+	int rc;
+
+	if (!scenery_is_sane(scenery))
+		return -EINVAL;
+	buffer_init(&raw, RAW_BYTES_MAX);
+	put_raw(&raw, scenery);
+	rc = raw.error;
+	room = ZSTD_compressBound(raw.size);
+	if (rc == 0)
+		packed = malloc(room);
+	if (packed)
+		size = ZSTD_compress(packed, room, raw.data, raw.size, ZSTD_LEVEL);
+	if (rc == 0 && (!packed || ZSTD_isError(size)))
+		rc = -ENOMEM;
+	if (rc == 0 && size + HEADER_BYTES > OBJECT_MAX)
+		rc = -EFBIG;
+	if (rc == 0) {
+		buffer_put(out, magic, sizeof(magic));
+		buffer_put_u8(out, VERSION);
+		buffer_put_u32(out, (uint32_t)raw.size);
+		buffer_put(out, packed, size);
+		rc = out->error;
+	}
+	free(packed);
+	buffer_finish(&raw);
+	return rc;
+}
+
+/* Reads a count; more than `most`, or more than the bytes that are left can hold, is a failure. */
+static uint32_t get_count(struct reader *in, uint32_t most, size_t bytes_each)
+{
+	uint32_t count = reader_u32(in);
+
+	if (count > most || count > reader_left(in) / bytes_each)
+		in->failed = true;
+	return in->failed ? 0 : count;
+}
+
+static int get_counts(struct reader *in, struct scenery *out)
+{
+	uint32_t meshes;
+
+	out->node_count = get_count(in, SCENERY_NODES_MAX, NODE_BYTES);
+	meshes = get_count(in, SCENERY_MESHES_MAX, MESH_BYTES);
+	out->motion_count = get_count(in, SCENERY_MOTIONS_MAX, MOTION_BYTES);
+	out->track_count = get_count(in, SCENERY_TRACKS_MAX, TRACK_BYTES);
+	out->number_count = get_count(in, SCENERY_NUMBERS_MAX, 4);
+	out->layer_count = get_count(in, SCENERY_LAYERS_MAX, LAYER_BYTES);
+	out->title_count = get_count(in, SCENERY_TITLES_MAX, TITLE_BYTES);
+	if (in->failed)
+		return -EBADMSG;
+	out->nodes = calloc(out->node_count + 1, sizeof(*out->nodes));
+	out->meshes = calloc(meshes + 1, sizeof(*out->meshes));
+	out->motions = calloc(out->motion_count + 1, sizeof(*out->motions));
+	out->tracks = calloc(out->track_count + 1, sizeof(*out->tracks));
+	out->numbers = calloc(out->number_count + 1, sizeof(*out->numbers));
+	out->layers = calloc(out->layer_count + 1, sizeof(*out->layers));
+	out->titles = calloc(out->title_count + 1, sizeof(*out->titles));
+	if (!out->nodes || !out->meshes || !out->motions || !out->tracks || !out->numbers ||
+	    !out->layers || !out->titles)
+		return -ENOMEM;
+	out->mesh_count = meshes;
+	return 0;
+}
+
+static int get_raw(struct scenery *out, struct bytes raw)
+{
+	struct reader in;
+	int rc;
+
+	reader_init(&in, raw);
+	rc = get_counts(&in, out);
+	for (uint32_t i = 0; rc == 0 && i < out->node_count; i++)
+		get_node(&in, &out->nodes[i]);
+	for (uint32_t i = 0; rc == 0 && i < out->mesh_count; i++)
+		rc = get_mesh(&in, &out->meshes[i]);
+	if (rc == 0)
+		rc = get_motions(&in, out);
+	if (rc == 0) {
+		get_layers(&in, out);
+		if (in.failed || reader_left(&in) > 0 || !scenery_is_sane(out))
+			rc = -EBADMSG;
+	}
+	return rc;
+}
+
+int scenery_decode(struct scenery *out, struct bytes object)
+{
+	struct reader in;
+	struct bytes packed;
+	uint8_t *raw;
+	uint32_t raw_bytes;
+	bool is_good;
+	int rc = 0;
+
+	*out = (struct scenery){ 0 };
+	if (object.size < HEADER_BYTES || object.size > OBJECT_MAX ||
+	    memcmp(object.data, magic, sizeof(magic)) != 0 || object.data[4] != VERSION)
+		return -EBADMSG;
+	reader_init(&in, object);
+	(void)reader_bytes(&in, 5);
+	raw_bytes = reader_u32(&in);
+	packed = reader_bytes(&in, reader_left(&in));
+	is_good = raw_bytes <= RAW_BYTES_MAX &&
+		  ZSTD_getFrameContentSize(packed.data, packed.size) == raw_bytes &&
+		  ZSTD_findFrameCompressedSize(packed.data, packed.size) == packed.size;
+	if (!is_good)
+		return -EBADMSG;
+	raw = malloc((size_t)raw_bytes + 1);
+	if (!raw)
+		return -ENOMEM;
+	if (ZSTD_decompress(raw, raw_bytes, packed.data, packed.size) != raw_bytes)
+		rc = -EBADMSG;
+	if (rc == 0)
+		rc = get_raw(out, (struct bytes){ raw, raw_bytes });
+	free(raw);
+	if (rc < 0)
+		scenery_finish(out);
+	return rc;
+}

@@ -1,0 +1,89 @@
+/* A roof in the second of two layers, and a door on a hinge that a touch opens: scenery for
+ * tests. */
+#ifndef GOPURA_TESTS_FORMAT_LITTLE_SCENERY_H
+#define GOPURA_TESTS_FORMAT_LITTLE_SCENERY_H
+
+#include <string.h>
+
+#include "format/scenery.h"
+
+struct little_scenery {
+	struct scenery scenery;
+	struct scenery_node nodes[3];
+	struct scenery_mesh meshes[2];
+	struct scenery_vertex vertices[2][4];
+	uint16_t triangles[2][2][3];
+	struct scenery_motion motion;
+	struct scenery_track tracks[2];
+	float numbers[2 + 8 + 2 + 2];
+	struct scenery_layer layers[2];
+	struct scenery_title titles[3];
+};
+
+static inline struct scenery_node little_node(uint32_t parent, uint32_t layer)
+{
+	return (struct scenery_node){
+		.parent = parent,
+		.layer = layer,
+		.place = { .turn = { 0, 0, 0, 1 }, .scale = { 1, 1, 1 }, .stretch = { 0, 0, 0, 1 } }
+	};
+}
+
+/* The sheets are upright squares of a metre, in x and z, that look to -y. */
+static inline void little_sheet(struct little_scenery *s, int mesh, uint32_t node)
+{
+	static const uint16_t corners[2][3] = { { 0, 1, 2 }, { 0, 2, 3 } };
+
+	for (int v = 0; v < 4; v++)
+		s->vertices[mesh][v] = (struct scenery_vertex){
+			.place = { (uint16_t)(v == 1 || v == 2 ? 1000 : 0), 0,
+				   (uint16_t)(v > 1 ? 1000 : 0) },
+			.normal = { 0, -127 },
+			.rgb = { 120, 80, 40 },
+		};
+	memcpy(s->triangles[mesh], corners, sizeof(corners));
+	s->meshes[mesh] = (struct scenery_mesh){ .node = node,
+						 .step_m = 0.001f,
+						 .has_two_sides = true,
+						 .vertex_count = 4,
+						 .triangle_count = 2,
+						 .vertices = s->vertices[mesh],
+						 .triangles = s->triangles[mesh] };
+}
+
+/* The door is node 1, in node 0 without a layer; it turns by 90 degrees about z at x = 0 within two
+ * seconds, and pales by half. The roof is node 2. */
+static inline void little_scenery_init(struct little_scenery *s)
+{
+	static const float numbers[] = { 0, 1,           0,           0, 0, 1, 0,
+					 0, 0.70710678f, 0.70710678f, 0, 1, 1, 0.5f };
+	*s = (struct little_scenery){
+		.nodes = { little_node(SCENERY_NONE, SCENERY_NONE), little_node(0, SCENERY_NONE),
+			   little_node(SCENERY_NONE, 1) },
+		.motion = { .touched = 0, .duration_s = 2, .track_count = 2 },
+		.tracks = { { .node = 1, .target = SCENERY_TURN, .key_count = 2 },
+			    { .node = 1, .target = SCENERY_OPACITY, .key_count = 2, .first = 10 } },
+		.layers = { { 0, 2 }, { 2, 1 } },
+		.titles = { { "en", "As found" }, { "de", "Wie gefunden" }, { "en", "As built" } },
+	};
+	memcpy(s->numbers, numbers, sizeof(numbers));
+	s->nodes[2].place.move_m[2] = 3;
+	little_sheet(s, 0, 1);
+	little_sheet(s, 1, 2);
+	s->scenery = (struct scenery){ .node_count = 3,
+				       .mesh_count = 2,
+				       .motion_count = 1,
+				       .track_count = 2,
+				       .number_count = 14,
+				       .layer_count = 2,
+				       .title_count = 3,
+				       .nodes = s->nodes,
+				       .meshes = s->meshes,
+				       .motions = &s->motion,
+				       .tracks = s->tracks,
+				       .numbers = s->numbers,
+				       .layers = s->layers,
+				       .titles = s->titles };
+}
+
+#endif

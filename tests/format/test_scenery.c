@@ -1,0 +1,138 @@
+/* Scenery on the wire: what comes back is what went in, and nothing else is taken. */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "tests/check.h"
+#include "tests/format/little_scenery.h"
+
+static struct buffer encoded(const struct scenery *scenery)
+{
+	struct buffer out;
+
+	buffer_init(&out, 1 << 20);
+	CHECK(scenery_encode(&out, scenery) == 0);
+	return out;
+}
+
+static void comes_back_as_it_went(void **state)
+{
+	struct little_scenery s;
+	struct scenery back;
+	struct buffer bytes, again;
+
+	(void)state;
+	little_scenery_init(&s);
+	bytes = encoded(&s.scenery);
+	CHECK(scenery_decode(&back, buffer_bytes(&bytes)) == 0);
+	CHECK(back.node_count == 3 && back.nodes[1].parent == 0 && back.nodes[2].layer == 1);
+	CHECK(memcmp(back.nodes, s.nodes, sizeof(s.nodes)) == 0);
+	CHECK(back.mesh_count == 2 && back.meshes[0].has_two_sides &&
+	      scenery_triangles(&back) == 4);
+	CHECK(memcmp(back.meshes[1].vertices, s.vertices[1], sizeof(s.vertices[1])) == 0);
+	CHECK(memcmp(back.meshes[1].triangles, s.triangles[1], sizeof(s.triangles[1])) == 0);
+	CHECK(back.motions[0].touched == 0 && back.motions[0].duration_s == 2);
+	CHECK(back.tracks[1].target == SCENERY_OPACITY && back.tracks[1].first == 10);
+	CHECK(memcmp(back.numbers, s.numbers, sizeof(s.numbers)) == 0);
+	CHECK(strcmp(back.titles[back.layers[1].first_title].text, "As built") == 0);
+	again = encoded(&back);
+	CHECK(again.size == bytes.size && memcmp(again.data, bytes.data, bytes.size) == 0);
+	scenery_finish(&back);
+	buffer_finish(&bytes);
+	buffer_finish(&again);
+}
+
+static void refuses_every_truncation_and_survives_every_bit(void **state)
+{
+	struct little_scenery s;
+	struct scenery back;
+	struct buffer bytes;
+
+	(void)state;
+	little_scenery_init(&s);
+	bytes = encoded(&s.scenery);
+	for (size_t n = 0; n < bytes.size; n++) {
+		uint8_t *exact = malloc(n ? n : 1);
+
+		memcpy(exact, bytes.data, n);
+		CHECK(scenery_decode(&back, (struct bytes){ exact, n }) == -EBADMSG);
+		CHECK(back.nodes == NULL);
+		free(exact);
+	}
+	for (size_t bit = 0; bit < 8 * bytes.size; bit++) {
+		bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
+		if (scenery_decode(&back, buffer_bytes(&bytes)) == 0)
+			scenery_finish(&back); /* other numbers, as good */
+		bytes.data[bit / 8] ^= (uint8_t)(1 << bit % 8);
+	}
+	buffer_put_u8(&bytes, 0);
+	CHECK(scenery_decode(&back, buffer_bytes(&bytes)) == -EBADMSG);
+	buffer_finish(&bytes);
+}
+
+static bool is_written(struct little_scenery *s)
+{
+	struct buffer out;
+	int rc;
+
+	buffer_init(&out, 1 << 20);
+	rc = scenery_encode(&out, &s->scenery);
+	buffer_finish(&out);
+	little_scenery_init(s);
+	CHECK(rc == 0 || rc == -EINVAL);
+	return rc == 0;
+}
+
+static void what_breaks_a_rule_is_not_written(void **state)
+{
+	struct little_scenery s;
+
+	(void)state;
+	little_scenery_init(&s);
+	CHECK(is_written(&s));
+	s.nodes[1].parent = 1; /* its own parent */
+	CHECK(!is_written(&s));
+	s.nodes[1].layer = 0; /* its parent has none */
+	CHECK(!is_written(&s));
+	s.nodes[2].layer = 2; /* no such layer */
+	CHECK(!is_written(&s));
+	s.nodes[0].place.turn[3] = 0.5f; /* no unit quaternion */
+	CHECK(!is_written(&s));
+	s.nodes[0].place.move_m[0] = NAN;
+	CHECK(!is_written(&s));
+	s.meshes[1].node = 3;
+	CHECK(!is_written(&s));
+	s.triangles[0][1][2] = 4;
+	CHECK(!is_written(&s));
+	s.motion.duration_s = 0;
+	CHECK(!is_written(&s));
+	s.motion.touched = SCENERY_NONE; /* always, and yet only once */
+	CHECK(!is_written(&s));
+	s.numbers[1] = 1.5f; /* after the end */
+	CHECK(!is_written(&s));
+	s.numbers[10] = 1; /* both keys at the end: a step */
+	CHECK(is_written(&s));
+	s.numbers[10] = 1;
+	s.numbers[11] = 0; /* back in time */
+	CHECK(!is_written(&s));
+	s.numbers[13] = 2; /* more than solid */
+	CHECK(!is_written(&s));
+	s.scenery.layer_count = 1; /* nothing to choose from */
+	s.scenery.title_count = 2;
+	CHECK(!is_written(&s));
+	s.titles[2].text[0] = '\0';
+	CHECK(!is_written(&s));
+	memcpy(s.titles[2].text, "\xff\xfe", 3); /* not UTF-8 */
+	CHECK(!is_written(&s));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(comes_back_as_it_went),
+		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
+		cmocka_unit_test(what_breaks_a_rule_is_not_written),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
