@@ -120,11 +120,6 @@ bool scenery_is_sane(const struct scenery *scenery);
 /* Returns the triangles of all meshes. */
 uint32_t scenery_triangles(const struct scenery *scenery);
 
-/* Appends the object. Returns -EINVAL if the scenery breaks a rule above, -EFBIG or -ENOMEM. */
-must_check int scenery_encode(struct buffer *out, const struct scenery *scenery);
-/* The caller ends *out with scenery_finish(); it is zeroed on failure. Returns -EBADMSG for
- * anything that the encoder cannot have written, or -ENOMEM. */
-must_check int scenery_decode(struct scenery *out, struct bytes object);
 void scenery_finish(struct scenery *scenery); /* NULL and zeroed are fine */
 
 #endif

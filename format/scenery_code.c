@@ -1,5 +1,5 @@
 /* Encodes and decodes scenery: a header and one zstd frame. */
-#include "format/scenery.h"
+#include "format/scenery_code.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "format/scenery_code.h"
 #include "tests/check.h"
 #include "tests/format/little_scenery.h"
 

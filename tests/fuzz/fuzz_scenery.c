@@ -1,5 +1,5 @@
 /* Any bytes as scenery: refused, or scenery that encodes and decodes to itself. */
-#include "format/scenery.h"
+#include "format/scenery_code.h"
 
 #include <stdlib.h>
 
