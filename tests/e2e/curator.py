@@ -1,7 +1,7 @@
 """A browser for gopura-curator: opens its WebSocket by hand and checks what it answers.
 
     tests/e2e/curator.py PORT FOLDER check     signs in as ana, an editor, and checks everything that docs/curator.md promises
-    tests/e2e/curator.py PORT FOLDER measure   prints the time from an input to its picture
+    tests/e2e/curator.py PORT FOLDER measure COUNT   times COUNT curators at once, from an input to its picture
 
 Standard library only."""
 
@@ -14,6 +14,7 @@ import socket
 import statistics
 import struct
 import sys
+import threading
 import time
 
 WIDTH, HEIGHT = 1280, 720
@@ -402,46 +403,57 @@ def orbit(eye, target, angle):
             target[1] + x * math.sin(angle) + y * math.cos(angle), eye[2]]
 
 
-def measure(port, count=60):
+def work(port, number, seconds, row):
+    """A curator who drags for a second and lets go, again and again; each input follows the picture before it. Then one
+    lasso and one heavy lasso."""
     browser, hello, _ = start(port)
     eye, target = hello["eye"], hello["target"]
-    moving, sharp = [], []
-    for n in range(count):
+    moving, sharp, tools = [], [], []
+    angle, end = number, time.monotonic() + seconds
+    browser.look(orbit(eye, target, angle), target)
+    browser.picture()  # what comes first is decoded
+    while time.monotonic() < end:
+        let_go = time.monotonic() + 1
+        while time.monotonic() < let_go:
+            angle += 0.02
+            begun = time.monotonic()
+            browser.look(orbit(eye, target, angle), target, moving=True)
+            browser.picture(sharp=False)
+            moving.append(1000 * (time.monotonic() - begun))
         begun = time.monotonic()
-        browser.look(orbit(eye, target, 0.02 * n), target, moving=True)
-        bytes_moving = len(browser.picture(sharp=False))
-        moving.append(1000 * (time.monotonic() - begun))
-    for n in range(10):
-        begun = time.monotonic()
-        browser.look(orbit(eye, target, 0.3 * n), target)
-        bytes_sharp = len(browser.picture())
+        browser.look(orbit(eye, target, angle), target)
+        browser.picture()
         sharp.append(1000 * (time.monotonic() - begun))
-    begun = time.monotonic()
-    browser.stroke("lasso", circle(150))
-    region = browser.text("region")["triangles"]
-    lasso = 1000 * (time.monotonic() - begun)
-    browser.picture()
-    shown = 1000 * (time.monotonic() - begun)
-    begun = time.monotonic()
-    browser.stroke("heavy", circle(150))
-    browser.text("region")
-    heavy = 1000 * (time.monotonic() - begun)
-    for n in range(count):
+    for tool in ("lasso", "heavy"):
         begun = time.monotonic()
-        browser.look(orbit(eye, target, 2.7 + 0.02 * n), target, moving=True)
-        browser.picture(sharp=False)
-        if n == 0:
-            with_region = []
-        with_region.append(1000 * (time.monotonic() - begun))
-    print(f"{hello['triangles']} triangles, {browser.width} x {browser.height}; milliseconds from input to picture")
-    for name, values in (("moving", moving), ("moving, with the region", with_region), ("sharp", sharp)):
-        print(f"{name}: median {statistics.median(values):.0f}, worst {max(values):.0f}")
-    print(f"lasso of {region} triangles: {lasso:.0f} to the count, {shown:.0f} to the picture; heavy lasso {heavy:.0f}")
-    print(f"a picture: {bytes_moving // 1024} KB moving, {bytes_sharp // 1024} KB sharp")
+        browser.stroke(tool, circle(150))
+        browser.text("region")
+        tools.append(1000 * (time.monotonic() - begun))
+    row[number] = {"triangles": hello["triangles"], "moving": moving, "sharp": sharp, "tools": tools}
+
+
+def measure(port, count, seconds=20):
+    """Prints a row of JSON: milliseconds from input to picture of so many curators at once, a figure for each."""
+    row = [None] * count
+    threads = [threading.Thread(target=work, args=(port, number, seconds, row)) for number in range(count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    median, worst = statistics.median, max
+    print(json.dumps({
+        "curators": count, "triangles": row[0]["triangles"],
+        "moving_ms": [round(median(one["moving"])) for one in row],
+        "moving_worst_ms": [round(worst(one["moving"])) for one in row],
+        "sharp_ms": [round(median(one["sharp"])) for one in row],
+        "sharp_worst_ms": [round(worst(one["sharp"])) for one in row],
+        "pictures": [len(one["moving"]) + len(one["sharp"]) for one in row],
+        "lasso_ms": [round(one["tools"][0]) for one in row],
+        "heavy_ms": [round(one["tools"][1]) for one in row]}))
 
 
 if __name__ == "__main__":
     if sys.argv[3] == "measure":
-        measure(int(sys.argv[1]))
+        measure(int(sys.argv[1]), int(sys.argv[4]))
     else:
         check(int(sys.argv[1]), sys.argv[2])
