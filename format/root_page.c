@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <math.h>
 
+enum { HAS_STREAM = 1, HAS_SCENERY = 2 };
+
 void lattice_fit(struct lattice *lattice, const float box_min_m[3], const float box_max_m[3])
 {
 	double longest = 0;
@@ -37,8 +39,9 @@ void root_page_encode(struct buffer *out, const struct root_page *root)
 	buffer_put(out, root->background, sizeof(root->background));
 	buffer_put_u64(out, root->source_triangles);
 	buffer_put_u64(out, root->published_triangles);
-	if (root->has_stream)
-		buffer_put_u8(out, root->has_stream);
+	if (root->has_stream || root->has_scenery)
+		buffer_put_u8(out, (uint8_t)(root->has_stream * HAS_STREAM +
+					     root->has_scenery * HAS_SCENERY));
 }
 
 static bool read_vector(struct reader *reader, float vector[3])
@@ -98,8 +101,11 @@ int root_page_decode(struct root_page *out, struct bytes payload)
 	root.source_triangles = reader_u64(&reader);
 	root.published_triangles = reader_u64(&reader);
 	if (!reader.failed && reader_left(&reader) > 0) {
-		root.has_stream = reader_u8(&reader);
-		good = good && root.has_stream == 1;
+		const uint8_t more = reader_u8(&reader);
+
+		root.has_stream = (more & HAS_STREAM) != 0;
+		root.has_scenery = (more & HAS_SCENERY) != 0;
+		good = good && more > 0 && more <= (HAS_STREAM | HAS_SCENERY);
 	}
 	if (reader.failed || reader_left(&reader) > 0 || !good || !is_sane(&root))
 		return -EBADMSG;

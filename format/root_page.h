@@ -1,6 +1,7 @@
 /* Payload of PAGE_ROOT: what a kiosk must know about a release before it fetches anything else.
  * Children, in this order: the hierarchy page, the samples page, the info page, the labels page if
- * any part has a region, and the stream page if has_stream is set. */
+ * any part has a region, the stream page if has_stream is set, and the scenery
+ * (format/scenery_code.h, no page) if has_scenery is set. */
 #ifndef GOPURA_FORMAT_ROOT_PAGE_H
 #define GOPURA_FORMAT_ROOT_PAGE_H
 
@@ -12,7 +13,7 @@ enum {
 	ROOT_CHILD_INFO,
 	ROOT_CHILD_COUNT, /* the children that every root page has */
 	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
-	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 2 /* with labels and stream */
+	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 3 /* with labels, stream and scenery */
 };
 
 enum {
@@ -50,10 +51,20 @@ struct root_page {
 	uint8_t background[3];     /* sRGB behind the model */
 	uint64_t source_triangles; /* of the original scan */
 	uint64_t published_triangles;
-	/* 1: the last child is the stream page (format/stream_page.h). Releases from before there
-	 * were such pages have no byte for it. */
-	uint8_t has_stream;
+	/* 1: there is a stream page (format/stream_page.h), or scenery. On the wire they are bits 0
+	 * and 1 of one byte, which releases without either do not have. A program from before there
+	 * was scenery refuses a release with it. */
+	uint8_t has_stream, has_scenery;
 };
+
+/* Returns the number of the first child after those for hierarchy, samples, information and labels;
+ * child_count is that of the page. */
+static inline uint32_t root_page_plain(const struct root_page *root, uint32_t child_count)
+{
+	const uint32_t more = (uint32_t)root->has_stream + root->has_scenery;
+
+	return child_count > more ? child_count - more : 0;
+}
 
 /* Appends the payload, for page.payload. Failures are out->error. */
 void root_page_encode(struct buffer *out, const struct root_page *root);

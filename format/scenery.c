@@ -147,6 +147,25 @@ static bool track_is_sane(const struct scenery *scenery, const struct scenery_tr
 	return values_are_sane(track, &scenery->numbers[track->first + track->key_count]);
 }
 
+static bool touches_are_sane(const struct scenery *scenery)
+{
+	if (scenery->touch_count > SCENERY_TOUCHES_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->touch_count; i++)
+		if (scenery->touches[i].node >= scenery->node_count ||
+		    scenery->touches[i].motion >= scenery->motion_count)
+			return false;
+	return true;
+}
+
+static bool is_touched(const struct scenery *scenery, uint32_t motion)
+{
+	for (uint32_t i = 0; i < scenery->touch_count; i++)
+		if (scenery->touches[i].motion == motion)
+			return true;
+	return false;
+}
+
 static bool motions_are_sane(const struct scenery *scenery)
 {
 	uint32_t track = 0, number = 0;
@@ -158,11 +177,11 @@ static bool motions_are_sane(const struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->motion_count; i++) {
 		const struct scenery_motion *motion = &scenery->motions[i];
 
-		if ((motion->touched != SCENERY_NONE && motion->touched >= scenery->node_count) ||
-		    !(motion->duration_s > 0 && motion->duration_s <= longest_s) ||
+		if (!(motion->duration_s > 0 && motion->duration_s <= longest_s) ||
 		    motion->first_track != track || motion->track_count < 1 ||
 		    motion->track_count > scenery->track_count - track ||
-		    (motion->touched == SCENERY_NONE && !motion->loops))
+		    (motion->loops && motion->returns) ||
+		    (!motion->loops && !is_touched(scenery, i)))
 			return false;
 		track += motion->track_count;
 	}
@@ -217,8 +236,8 @@ static bool layers_are_sane(const struct scenery *scenery)
 
 bool scenery_is_sane(const struct scenery *scenery)
 {
-	return nodes_are_sane(scenery) && meshes_are_sane(scenery) && motions_are_sane(scenery) &&
-	       layers_are_sane(scenery);
+	return nodes_are_sane(scenery) && meshes_are_sane(scenery) && touches_are_sane(scenery) &&
+	       motions_are_sane(scenery) && layers_are_sane(scenery);
 }
 
 void scenery_finish(struct scenery *scenery)
@@ -232,6 +251,7 @@ void scenery_finish(struct scenery *scenery)
 	free(scenery->nodes);
 	free(scenery->meshes);
 	free(scenery->motions);
+	free(scenery->touches);
 	free(scenery->tracks);
 	free(scenery->numbers);
 	free(scenery->layers);

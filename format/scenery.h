@@ -17,6 +17,7 @@ enum {
 	SCENERY_TRIANGLES_MAX = 1 << 18,     /* of a mesh */
 	SCENERY_ALL_TRIANGLES_MAX = 1 << 19, /* of all meshes */
 	SCENERY_MOTIONS_MAX = 256,
+	SCENERY_TOUCHES_MAX = 1024,
 	SCENERY_TRACKS_MAX = 1024,     /* of all motions */
 	SCENERY_NUMBERS_MAX = 1 << 20, /* of all tracks */
 	SCENERY_LAYERS_MAX = 8,
@@ -81,12 +82,18 @@ struct scenery_track {
 	uint32_t first;
 };
 
+/* A motion that no touch starts runs always. Its tracks set their nodes while it runs; after it,
+ * they stay as it left them. */
 struct scenery_motion {
-	/* What starts it: a touch on a mesh of this node or below; SCENERY_NONE: it runs always. */
-	uint32_t touched;
-	float duration_s;                  /* above 0, at most an hour */
-	bool loops;                        /* begins again until touched again, or for ever */
+	float duration_s; /* above 0, at most an hour */
+	bool loops;       /* begins again, until it is touched again; so does what runs always */
+	bool returns;     /* a touch after its end runs it backwards, and the next one forwards */
 	uint32_t first_track, track_count; /* at least 1 */
+};
+
+/* A touch on a mesh of the node, or below it, starts the motion. */
+struct scenery_touch {
+	uint32_t node, motion;
 };
 
 struct scenery_title {
@@ -101,12 +108,13 @@ struct scenery_layer {
 
 /* The arrays are owned. Zeroed is no scenery. */
 struct scenery {
-	uint32_t node_count, mesh_count, motion_count, track_count, number_count;
+	uint32_t node_count, mesh_count, motion_count, touch_count, track_count, number_count;
 	uint32_t layer_count; /* 0, or at least 2 */
 	uint32_t title_count;
 	struct scenery_node *nodes;
 	struct scenery_mesh *meshes;
 	struct scenery_motion *motions;
+	struct scenery_touch *touches;
 	struct scenery_track *tracks; /* motion by motion */
 	float *numbers;               /* track by track */
 	struct scenery_layer *layers;

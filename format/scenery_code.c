@@ -18,7 +18,8 @@ enum {
 	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4,
 	VERTEX_BYTES = 11,
 	TRIANGLE_BYTES = 6,
-	MOTION_BYTES = 4 + 4 + 1 + 4,
+	MOTION_BYTES = 4 + 1 + 1 + 4,
+	TOUCH_BYTES = 4 + 4,
 	TRACK_BYTES = 4 + 1 + 4,
 	LAYER_BYTES = 1,
 	TITLE_BYTES = 4,
@@ -132,10 +133,14 @@ static void put_motions(struct buffer *out, const struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->motion_count; i++) {
 		const struct scenery_motion *motion = &scenery->motions[i];
 
-		buffer_put_u32(out, motion->touched);
 		buffer_put_f32(out, motion->duration_s);
 		buffer_put_u8(out, motion->loops);
+		buffer_put_u8(out, motion->returns);
 		buffer_put_u32(out, motion->track_count);
+	}
+	for (uint32_t i = 0; i < scenery->touch_count; i++) {
+		buffer_put_u32(out, scenery->touches[i].node);
+		buffer_put_u32(out, scenery->touches[i].motion);
 	}
 	for (uint32_t i = 0; i < scenery->track_count; i++) {
 		const struct scenery_track *track = &scenery->tracks[i];
@@ -154,14 +159,18 @@ static int get_motions(struct reader *in, struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->motion_count; i++) {
 		struct scenery_motion *motion = &scenery->motions[i];
 
-		motion->touched = reader_u32(in);
 		motion->duration_s = reader_f32(in);
 		motion->loops = get_flag(in);
+		motion->returns = get_flag(in);
 		motion->first_track = next;
 		motion->track_count = reader_u32(in);
 		if (motion->track_count > SCENERY_TRACKS_MAX)
 			return -EBADMSG;
 		next += motion->track_count;
+	}
+	for (uint32_t i = 0; i < scenery->touch_count; i++) {
+		scenery->touches[i].node = reader_u32(in);
+		scenery->touches[i].motion = reader_u32(in);
 	}
 	next = 0;
 	for (uint32_t i = 0; i < scenery->track_count; i++) {
@@ -214,6 +223,7 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 	buffer_put_u32(out, scenery->node_count);
 	buffer_put_u32(out, scenery->mesh_count);
 	buffer_put_u32(out, scenery->motion_count);
+	buffer_put_u32(out, scenery->touch_count);
 	buffer_put_u32(out, scenery->track_count);
 	buffer_put_u32(out, scenery->number_count);
 	buffer_put_u32(out, scenery->layer_count);
@@ -276,6 +286,7 @@ static int get_counts(struct reader *in, struct scenery *out)
 	out->node_count = get_count(in, SCENERY_NODES_MAX, NODE_BYTES);
 	meshes = get_count(in, SCENERY_MESHES_MAX, MESH_BYTES);
 	out->motion_count = get_count(in, SCENERY_MOTIONS_MAX, MOTION_BYTES);
+	out->touch_count = get_count(in, SCENERY_TOUCHES_MAX, TOUCH_BYTES);
 	out->track_count = get_count(in, SCENERY_TRACKS_MAX, TRACK_BYTES);
 	out->number_count = get_count(in, SCENERY_NUMBERS_MAX, 4);
 	out->layer_count = get_count(in, SCENERY_LAYERS_MAX, LAYER_BYTES);
@@ -285,12 +296,13 @@ static int get_counts(struct reader *in, struct scenery *out)
 	out->nodes = calloc(out->node_count + 1, sizeof(*out->nodes));
 	out->meshes = calloc(meshes + 1, sizeof(*out->meshes));
 	out->motions = calloc(out->motion_count + 1, sizeof(*out->motions));
+	out->touches = calloc(out->touch_count + 1, sizeof(*out->touches));
 	out->tracks = calloc(out->track_count + 1, sizeof(*out->tracks));
 	out->numbers = calloc(out->number_count + 1, sizeof(*out->numbers));
 	out->layers = calloc(out->layer_count + 1, sizeof(*out->layers));
 	out->titles = calloc(out->title_count + 1, sizeof(*out->titles));
-	if (!out->nodes || !out->meshes || !out->motions || !out->tracks || !out->numbers ||
-	    !out->layers || !out->titles)
+	if (!out->nodes || !out->meshes || !out->motions || !out->touches || !out->tracks ||
+	    !out->numbers || !out->layers || !out->titles)
 		return -ENOMEM;
 	out->mesh_count = meshes;
 	return 0;

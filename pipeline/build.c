@@ -80,7 +80,8 @@ static int make_stamp(struct hash *out, struct sources *sources,
 		      const struct build_options *options)
 {
 	const struct content *content = sources_content(sources);
-	static const char *const names[] = { "temple.ini", "parts.json", "tours.json" };
+	static const char *const names[] = { "temple.ini", "parts.json", "tours.json",
+					     "scenes.json" };
 	struct diagnostics diagnostics = { 0 };
 	struct hash scans;
 	struct buffer text;
@@ -104,6 +105,7 @@ static int make_stamp(struct hash *out, struct sources *sources,
 	put_folder(&text, content, "pages");
 	put_folder(&text, content, "pictures");
 	put_folder(&text, content, "regions");
+	put_folder(&text, content, "scenes");
 	*out = hash_of(buffer_bytes(&text));
 	if (rc == 0)
 		rc = text.error;

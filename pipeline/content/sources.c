@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "pipeline/content/part_faces.h"
+#include "pipeline/content/scenes.h"
 #include "pipeline/content/tour_check.h"
 
 /* All errors are logged, but only the first few warnings. */
@@ -21,6 +22,8 @@ struct sources {
 	struct draft *draft; /* NULL: not read yet, or compiled */
 	struct info_built built;
 	bool is_built;
+	struct scenery scenery;
+	bool has_scenery;         /* was read */
 	struct diagnostics found; /* in the files of the folder */
 	bool is_quiet;
 	uint32_t logged, warnings; /* how many of them were logged, and how many are warnings */
@@ -78,6 +81,7 @@ void sources_destroy(struct sources *sources)
 	if (!sources)
 		return;
 	info_built_finish(&sources->built);
+	scenery_finish(&sources->scenery);
 	info_draft_destroy(sources->draft);
 	part_faces_finish(&sources->faces);
 	scans_destroy(sources->scans);
@@ -202,10 +206,30 @@ int sources_check_texts(struct sources *sources)
 	return tell(sources, rc, &none);
 }
 
+int sources_scenery(struct sources *sources, const struct scenery **out)
+{
+	const struct diagnostics none = { 0 };
+	int rc = 0;
+
+	*out = NULL;
+	if (!sources->has_scenery)
+		rc = scenes_read(&sources->scenery, sources->content, &sources->found);
+	log_found(sources);
+	if (rc < 0)
+		return tell(sources, rc, &none);
+	sources->has_scenery = true;
+	*out = &sources->scenery;
+	return 0;
+}
+
 int sources_check(struct sources *sources)
 {
 	const struct info_built *built;
+	const struct scenery *scenery;
 	int rc = sources_check_texts(sources);
+
+	if (rc == 0)
+		rc = sources_scenery(sources, &scenery);
 
 	if (rc == 0 && sources->draft && info_has_tours(sources->draft))
 		return sources_info(sources, &built);

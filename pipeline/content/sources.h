@@ -3,6 +3,7 @@
 #ifndef GOPURA_PIPELINE_CONTENT_SOURCES_H
 #define GOPURA_PIPELINE_CONTENT_SOURCES_H
 
+#include "format/scenery.h"
 #include "pipeline/content/info_build.h"
 #include "pipeline/content/scans.h"
 
@@ -21,14 +22,18 @@ void sources_be_quiet(struct sources *sources);
 /* Returns what was found in the folder's files, borrowed until the next call. */
 const struct diagnostics *sources_found(const struct sources *sources);
 
-/* Checks parts, pages, pictures and tours, so that faults are found before the long work. The scans
- * are imported only if there are tours, whose ways must not lead through them. -EINVAL: every fault
- * was logged. Other errors are logged too. */
+/* Checks parts, pages, pictures, tours and scenes, so that faults are found before the long work.
+ * The scans are imported only if there are tours, whose ways must not lead through them. -EINVAL:
+ * every fault was logged. Other errors are logged too. */
 must_check int sources_check(struct sources *sources);
-/* The same without the ways of tours: no scan is read. */
+/* The same without the ways of tours and without scenes: no scan is read. */
 must_check int sources_check_texts(struct sources *sources);
 /* Gets the compiled parts, pages and tours, checked likewise. *out is borrowed for the lifetime. */
 must_check int sources_info(struct sources *sources, const struct info_built **out);
+
+/* Gets what stands beside the scans; without nodes if there are no scenes. Errors are logged.
+ * *out is borrowed for the lifetime. */
+must_check int sources_scenery(struct sources *sources, const struct scenery **out);
 
 /* The faces of a part whose region is a list of them. */
 struct sources_faces {

@@ -16,6 +16,7 @@
 #include "format/picture.h"
 #include "format/root_page.h"
 #include "format/samples.h"
+#include "format/scenery_code.h"
 #include "format/stream.h"
 #include "format/stream_page.h"
 #include "format/tile.h"
@@ -236,6 +237,23 @@ static int print_labels(FILE *to, struct bytes bytes)
 	return 0;
 }
 
+static int print_scenery(FILE *to, struct bytes bytes)
+{
+	struct scenery scenery;
+	int rc = scenery_decode(&scenery, bytes);
+
+	if (rc < 0)
+		return rc;
+	fprintf(to, "scenery, %zu bytes: %u triangles in %u meshes, %u nodes, %u motions\n",
+		bytes.size, scenery_triangles(&scenery), scenery.mesh_count, scenery.node_count,
+		scenery.motion_count);
+	for (uint32_t i = 0; i < scenery.layer_count; i++)
+		fprintf(to, "  layer %-13u %s\n", i,
+			scenery.titles[scenery.layers[i].first_title].text);
+	scenery_finish(&scenery);
+	return 0;
+}
+
 static int print_locator(FILE *to, struct bytes bytes)
 {
 	struct locator locator;
@@ -347,13 +365,10 @@ int inspect_bytes(FILE *to, struct bytes bytes)
 		const char *magic;
 		int (*print)(FILE *, struct bytes);
 	} forms[] = {
-		{ "GPag", print_page },
-		{ "GPpg", print_patch_group },
-		{ "GPlb", print_labels },
-		{ "GLoc", print_locator },
-		{ "SQLite format 3", print_info },
-		{ "{", print_signed },
-		{ "\xff\xd8", print_picture },
+		{ "GPag", print_page },       { "GPpg", print_patch_group },
+		{ "GPlb", print_labels },     { "GPsy", print_scenery },
+		{ "GLoc", print_locator },    { "SQLite format 3", print_info },
+		{ "{", print_signed },        { "\xff\xd8", print_picture },
 		{ "\x89PNG", print_picture },
 	};
 	int rc = -EBADMSG;

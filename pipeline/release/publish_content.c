@@ -16,6 +16,7 @@
 #include "pipeline/release/publish_info.h"
 #include "pipeline/release/publish_labels.h"
 #include "pipeline/release/publish_samples.h"
+#include "pipeline/release/publish_scenery.h"
 #include "pipeline/release/publish_stream.h"
 #include "pipeline/release/start_view.h"
 
@@ -194,6 +195,10 @@ static int publish_objects(struct publish_content_report *report,
 				    &children[child_count]);
 	root.has_stream = rc == 1;
 	child_count += root.has_stream;
+	if (rc >= 0)
+		rc = publish_scenery(objects, sources, &children[child_count]);
+	root.has_scenery = rc == 1;
+	child_count += root.has_scenery;
 	if (rc >= 0 && content->budget_bytes > 0)
 		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
 					 content->quality_rule == CONTENT_QUALITY_GAIN

@@ -6,6 +6,7 @@
 
 #include "format/article.h"
 #include "format/label.h"
+#include "format/scenery_code.h"
 #include "format/stream.h"
 #include "format/stream_page.h"
 #include "pipeline/release/verify_pages.h"
@@ -37,6 +38,20 @@ static void count(struct verify_sum *sum, struct bytes object)
 	sum->bytes += object.size;
 }
 
+static int check_scenery(struct verify_walk *walk, const struct verify_page *page, uint32_t child)
+{
+	struct scenery scenery;
+	struct bytes object;
+	int rc = verify_child(walk, page, child, &object);
+
+	if (rc < 0)
+		return rc;
+	count(&walk->report->scenery, object);
+	rc = scenery_decode(&scenery, object);
+	scenery_finish(&scenery);
+	return rc == -EBADMSG ? blame_child(walk, page, child, "scenery", "does not decode") : rc;
+}
+
 int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 {
 	static const enum page_kind kinds[] = {
@@ -51,13 +66,15 @@ int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 
 	if (rc < 0)
 		return rc;
-	plain = page->page.child_count > 0 ? page->page.child_count - root->has_stream : 0;
+	plain = root_page_plain(root, page->page.child_count);
 	if (plain < ROOT_CHILD_COUNT || plain > ROOT_CHILD_LABELS + 1)
 		return blame_page(walk, page,
-				  "a root page has three children, and one each for labels and the "
-				  "streaming mesh");
-	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)
+				  "a root page has three children, and one each for labels, the "
+				  "streaming mesh and scenery");
+	for (uint32_t i = 0; rc == 0 && i < plain + root->has_stream; i++)
 		rc = verify_later(walk, page, i, i < plain ? kinds[i] : PAGE_STREAM);
+	if (rc == 0 && root->has_scenery)
+		rc = check_scenery(walk, page, page->page.child_count - 1);
 	return rc;
 }
 

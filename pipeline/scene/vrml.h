@@ -30,11 +30,21 @@ struct vrml_node {
 	uint32_t child_count;
 };
 
+/* ROUTE from.out TO to.in: what happens at one node is told to another. */
+struct vrml_route {
+	const struct vrml_route *before; /* in the order of the files, from the last one */
+	struct vrml_node *const *from, *const *to; /* what they point to is not NULL */
+	const char *out, *in;                      /* the names of events */
+	const char *file;
+	unsigned line;
+};
+
 struct vrml {
 	struct arena arena; /* holds all the others */
 	struct vrml_node *const *roots;
 	uint32_t root_count;
-	uint32_t route_count; /* connections between events, which a scan has no use for */
+	const struct vrml_route *routes; /* the last one; NULL: none */
+	uint32_t route_count;
 };
 
 struct vrml_options {

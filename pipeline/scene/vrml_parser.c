@@ -359,28 +359,51 @@ static int parse_instance(struct vrml_parser *parser, const struct vrml_proto *p
 
 /* ---- nodes */
 
+/* One side of a ROUTE: node.event */
+static int parse_event(struct vrml_parser *parser, struct vrml_node *const **node,
+		       const char **event, unsigned line)
+{
+	const struct vrml_definition *definition;
+	const char *name = NULL;
+	int rc = vrml_take_name(parser, &name, "the name of a node");
+
+	if (rc == 0)
+		rc = vrml_expect(parser, ".");
+	if (rc == 0)
+		rc = vrml_take_name(parser, event, "the name of an event");
+	if (rc < 0)
+		return rc;
+	definition = vrml_find_definition(parser->scope, name);
+	if (!definition)
+		return VRML_FAIL(parser, -EBADMSG, line,
+				 "ROUTE names %.40s, but no node before it is called so by DEF",
+				 name);
+	/* It may be the node that is being parsed, which is set when it ends. */
+	*node = &definition->node;
+	return 0;
+}
+
 /* ROUTE a.event TO b.event */
 static int parse_route(struct vrml_parser *parser)
 {
-	const char *name = NULL, *event = NULL;
+	struct vrml_route *route = arena_alloc(&parser->scene->arena, sizeof(*route));
 	unsigned line = parser->scope->lexer.line;
-	int rc = 0;
+	int rc;
 
-	for (int side = 0; side < 2 && rc == 0; side++) {
-		rc = vrml_take_name(parser, &name, "the name of a node");
-		if (rc == 0)
-			rc = vrml_expect(parser, ".");
-		if (rc == 0)
-			rc = vrml_take_name(parser, &event, "the name of an event");
-		if (rc == 0 && !vrml_find_definition(parser->scope, name))
-			rc = VRML_FAIL(
-				parser, -EBADMSG, line,
-				"ROUTE names %.40s, but no node before it is called so by DEF",
-				name);
-		if (rc == 0 && side == 0)
-			rc = vrml_expect(parser, "TO");
+	if (!route)
+		return vrml_fail_memory(parser);
+	*route = (struct vrml_route){ .before = parser->scene->routes,
+				      .file = parser->scope->source->path,
+				      .line = line };
+	rc = parse_event(parser, &route->from, &route->out, line);
+	if (rc == 0)
+		rc = vrml_expect(parser, "TO");
+	if (rc == 0)
+		rc = parse_event(parser, &route->to, &route->in, line);
+	if (rc == 0) {
+		parser->scene->routes = route;
+		parser->scene->route_count++;
 	}
-	parser->scene->route_count += rc == 0;
 	return rc;
 }
 

@@ -10,7 +10,7 @@
 bool scene_has_labels(const struct scene *scene)
 {
 	return scene->has_root &&
-	       scene->root_child_count - scene->root.has_stream > ROOT_CHILD_LABELS;
+	       root_page_plain(&scene->root, scene->root_child_count) > ROOT_CHILD_LABELS;
 }
 
 void scene_drop_labels(struct scene *scene)

@@ -214,7 +214,7 @@ static int open_root(struct scene *scene, struct bytes bytes)
 	if (rc < 0)
 		return rc;
 	rc = page.kind == PAGE_ROOT ? root_page_decode(&scene->root, page.payload) : -EBADMSG;
-	if (rc == 0 && page.child_count < (uint32_t)ROOT_CHILD_COUNT + scene->root.has_stream)
+	if (rc == 0 && root_page_plain(&scene->root, page.child_count) < ROOT_CHILD_COUNT)
 		rc = -EBADMSG;
 	if (rc == 0) {
 		scene->root_child_count =

@@ -83,7 +83,8 @@ static float stream_costs(const struct scene *scene, uint32_t blocks)
 static void want_stream(struct scene *scene)
 {
 	const struct stream_growth *growth = &scene->stream.growth;
-	uint32_t last = scene->root_child_count - 1, most = 2 * MESSAGE_PRIORITY_INDEX - 1;
+	uint32_t last = root_page_plain(&scene->root, scene->root_child_count);
+	uint32_t most = 2 * MESSAGE_PRIORITY_INDEX - 1;
 	if (!growth->decoder) {
 		want_child_of_root(scene, OBJECT_STREAM, last, 2 * MESSAGE_PRIORITY_INDEX + 1);
 		return;

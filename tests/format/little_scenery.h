@@ -14,6 +14,7 @@ struct little_scenery {
 	struct scenery_vertex vertices[2][4];
 	uint16_t triangles[2][2][3];
 	struct scenery_motion motion;
+	struct scenery_touch touch;
 	struct scenery_track tracks[2];
 	float numbers[2 + 8 + 2 + 2];
 	struct scenery_layer layers[2];
@@ -60,7 +61,8 @@ static inline void little_scenery_init(struct little_scenery *s)
 	*s = (struct little_scenery){
 		.nodes = { little_node(SCENERY_NONE, SCENERY_NONE), little_node(0, SCENERY_NONE),
 			   little_node(SCENERY_NONE, 1) },
-		.motion = { .touched = 0, .duration_s = 2, .track_count = 2 },
+		.motion = { .duration_s = 2, .returns = true, .track_count = 2 },
+		.touch = { .node = 0, .motion = 0 },
 		.tracks = { { .node = 1, .target = SCENERY_TURN, .key_count = 2 },
 			    { .node = 1, .target = SCENERY_OPACITY, .key_count = 2, .first = 10 } },
 		.layers = { { 0, 2 }, { 2, 1 } },
@@ -73,6 +75,7 @@ static inline void little_scenery_init(struct little_scenery *s)
 	s->scenery = (struct scenery){ .node_count = 3,
 				       .mesh_count = 2,
 				       .motion_count = 1,
+				       .touch_count = 1,
 				       .track_count = 2,
 				       .number_count = 14,
 				       .layer_count = 2,
@@ -80,6 +83,7 @@ static inline void little_scenery_init(struct little_scenery *s)
 				       .nodes = s->nodes,
 				       .meshes = s->meshes,
 				       .motions = &s->motion,
+				       .touches = &s->touch,
 				       .tracks = s->tracks,
 				       .numbers = s->numbers,
 				       .layers = s->layers,

@@ -69,8 +69,8 @@ static void gives_back_every_field(void **state)
 	buffer_finish(&buffer);
 }
 
-/* Releases from before there were streams end before the byte that says so. */
-static void says_whether_there_is_a_stream(void **state)
+/* Releases from before there were streams and scenery end before the byte that says so. */
+static void says_whether_there_is_a_stream_or_scenery(void **state)
 {
 	struct root_page root = sample_root(), back;
 	struct buffer buffer;
@@ -82,7 +82,11 @@ static void says_whether_there_is_a_stream(void **state)
 	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0 && back.has_stream == 1);
 	CHECK(root_page_decode(&back, (struct bytes){ buffer.data, buffer.size - 1 }) == 0);
 	CHECK(back.has_stream == 0);
-	buffer.data[buffer.size - 1] = 2;
+	buffer.data[buffer.size - 1] = 2; /* scenery alone */
+	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
+	CHECK(back.has_stream == 0 && back.has_scenery == 1);
+	CHECK(root_page_plain(&back, 5) == 4);
+	buffer.data[buffer.size - 1] = 4;
 	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
 	buffer.data[buffer.size - 1] = 1;
 	buffer_put_u8(&buffer, 1);
@@ -125,7 +129,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(gives_back_every_field),
-		cmocka_unit_test(says_whether_there_is_a_stream),
+		cmocka_unit_test(says_whether_there_is_a_stream_or_scenery),
 		cmocka_unit_test(refuses_values_that_would_break_a_picture),
 	};
 

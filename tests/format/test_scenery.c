@@ -32,7 +32,8 @@ static void comes_back_as_it_went(void **state)
 	      scenery_triangles(&back) == 4);
 	CHECK(memcmp(back.meshes[1].vertices, s.vertices[1], sizeof(s.vertices[1])) == 0);
 	CHECK(memcmp(back.meshes[1].triangles, s.triangles[1], sizeof(s.triangles[1])) == 0);
-	CHECK(back.motions[0].touched == 0 && back.motions[0].duration_s == 2);
+	CHECK(back.touches[0].node == 0 && back.motions[0].returns &&
+	      back.motions[0].duration_s == 2);
 	CHECK(back.tracks[1].target == SCENERY_OPACITY && back.tracks[1].first == 10);
 	CHECK(memcmp(back.numbers, s.numbers, sizeof(s.numbers)) == 0);
 	CHECK(strcmp(back.titles[back.layers[1].first_title].text, "As built") == 0);
@@ -107,7 +108,11 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	CHECK(!is_written(&s));
 	s.motion.duration_s = 0;
 	CHECK(!is_written(&s));
-	s.motion.touched = SCENERY_NONE; /* always, and yet only once */
+	s.scenery.touch_count = 0; /* always, and yet only once */
+	CHECK(!is_written(&s));
+	s.touch.motion = 1;
+	CHECK(!is_written(&s));
+	s.motion.loops = true; /* and returns */
 	CHECK(!is_written(&s));
 	s.numbers[1] = 1.5f; /* after the end */
 	CHECK(!is_written(&s));

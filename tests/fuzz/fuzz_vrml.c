@@ -1,8 +1,9 @@
 /* A VRML97 scene, gzip'd or not, which may name itself as the file of an Inline or a prototype: it
  * is refused with its name, or becomes triangles whose numbers are finite or far, and whose
- * textures are there. */
+ * textures are there; or scenery. */
 #include <errno.h>
 
+#include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_surface.h"
 #include "tests/fuzz/scratch.h"
 
@@ -23,6 +24,26 @@ static void check(const struct vrml_surface *surface)
 	}
 }
 
+static int make_scenery(const struct vrml *scene, struct diagnostics *diagnostics,
+			struct diagnostics *warnings)
+{
+	const struct scenery_node root = { .parent = SCENERY_NONE,
+					   .layer = SCENERY_NONE,
+					   .place = scenery_at_rest };
+	struct scenery_maker maker = { 0 };
+	struct scenery made = { 0 };
+	uint32_t node = 0;
+	int rc = scenery_add_node(&maker, &root, &node);
+
+	if (rc == 0)
+		rc = vrml_scenery_add(&maker, scene, node, diagnostics, warnings);
+	if (rc == 0 && scenery_maker_end(&maker, &made) == 0)
+		(void)scenery_is_sane(&made); /* numbers may be too large */
+	scenery_maker_finish(&maker);
+	scenery_finish(&made);
+	return rc;
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
@@ -41,6 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		if (rc == 0) {
 			check(&surface);
 			vrml_surface_finish(&surface);
+			rc = make_scenery(scene, &diagnostics, &warnings);
 		}
 	}
 	if (rc < 0 && !strstr(diagnostics.first.text, ".wrl"))

@@ -1,0 +1,147 @@
+/* Gathers scenery: arrays that grow. */
+#include "pipeline/scene/scenery_maker.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "geometry/vec.h"
+#include "pipeline/scene/scenery_mesh.h"
+
+const struct scenery_place scenery_at_rest = { .turn = { 0, 0, 0, 1 },
+					       .scale = { 1, 1, 1 },
+					       .stretch = { 0, 0, 0, 1 } };
+
+void scenery_turn(float out[4], const float axis[3], float angle_rad)
+{
+	float unit[3] = { axis[0], axis[1], axis[2] };
+	float half = vec_normalise(unit) > 0 ? angle_rad / 2 : 0;
+
+	for (int k = 0; k < 3; k++)
+		out[k] = sinf(half) * unit[k];
+	out[3] = cosf(half);
+}
+
+int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node, uint32_t *number)
+{
+	struct scenery *out = &maker->out;
+	int rc = ARRAY_RESERVE(out->nodes, maker->node_room, (uint64_t)out->node_count + 1,
+			       SCENERY_NODES_MAX);
+
+	if (rc < 0)
+		return rc;
+	*number = out->node_count;
+	out->nodes[out->node_count++] = *node;
+	return 0;
+}
+
+static int find_sheet(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+		      struct scenery_sheet **found)
+{
+	int rc;
+
+	for (uint32_t i = maker->sheet_count; i-- > 0;) {
+		*found = &maker->sheets[i];
+		if ((*found)->node == node && (*found)->has_two_sides == has_two_sides)
+			return 0;
+	}
+	rc = ARRAY_RESERVE(maker->sheets, maker->sheet_room, (uint64_t)maker->sheet_count + 1,
+			   SCENERY_MESHES_MAX);
+	if (rc < 0)
+		return rc;
+	*found = &maker->sheets[maker->sheet_count++];
+	**found = (struct scenery_sheet){ .node = node, .has_two_sides = has_two_sides };
+	return 0;
+}
+
+int scenery_add_surface(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+			const struct soup_triangle *triangles, uint32_t count, float crease_rad)
+{
+	struct scenery_sheet *sheet;
+	int rc;
+
+	if (count == 0)
+		return 0;
+	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count)
+		return -EFBIG;
+	maker->triangle_count += count;
+	rc = find_sheet(maker, node, has_two_sides, &sheet);
+	return rc < 0 ? rc : scenery_sheet_add(sheet, triangles, count, crease_rad);
+}
+
+int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
+		       uint32_t *number)
+{
+	struct scenery *out = &maker->out;
+	int rc = ARRAY_RESERVE(out->motions, maker->motion_room, (uint64_t)out->motion_count + 1,
+			       SCENERY_MOTIONS_MAX);
+
+	if (rc < 0)
+		return rc;
+	*number = out->motion_count;
+	out->motions[out->motion_count] = *motion;
+	out->motions[out->motion_count].first_track = out->track_count;
+	out->motions[out->motion_count++].track_count = 0;
+	return 0;
+}
+
+int scenery_add_track(struct scenery_maker *maker, uint32_t node, enum scenery_target target,
+		      const float *times, uint32_t key_count, float **values)
+{
+	struct scenery *out = &maker->out;
+	uint64_t needed = (uint64_t)key_count * (1 + scenery_width(target));
+	int rc = ARRAY_RESERVE(out->tracks, maker->track_room, (uint64_t)out->track_count + 1,
+			       SCENERY_TRACKS_MAX);
+
+	if (rc == 0)
+		rc = ARRAY_RESERVE(out->numbers, maker->number_room, out->number_count + needed,
+				   SCENERY_NUMBERS_MAX);
+	if (rc < 0)
+		return rc;
+	out->tracks[out->track_count++] = (struct scenery_track){
+		.node = node, .target = target, .key_count = key_count, .first = out->number_count
+	};
+	out->motions[out->motion_count - 1].track_count++;
+	memcpy(&out->numbers[out->number_count], times, key_count * sizeof(*times));
+	*values = &out->numbers[out->number_count + key_count];
+	out->number_count += (uint32_t)needed;
+	return 0;
+}
+
+int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motion)
+{
+	struct scenery *out = &maker->out;
+	int rc = ARRAY_RESERVE(out->touches, maker->touch_room, (uint64_t)out->touch_count + 1,
+			       SCENERY_TOUCHES_MAX);
+
+	if (rc == 0)
+		out->touches[out->touch_count++] = (struct scenery_touch){ node, motion };
+	return rc;
+}
+
+int scenery_maker_end(struct scenery_maker *maker, struct scenery *out)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < maker->sheet_count && rc == 0; i++)
+		rc = scenery_sheet_meshes(&maker->sheets[i], &maker->out, &maker->mesh_room);
+	if (rc < 0)
+		return rc;
+	*out = maker->out;
+	maker->out = (struct scenery){ 0 };
+	scenery_maker_finish(maker);
+	return 0;
+}
+
+void scenery_maker_finish(struct scenery_maker *maker)
+{
+	if (!maker)
+		return;
+	for (uint32_t i = 0; i < maker->sheet_count; i++)
+		scenery_sheet_finish(&maker->sheets[i]);
+	free(maker->sheets);
+	scenery_finish(&maker->out);
+	*maker = (struct scenery_maker){ 0 };
+}

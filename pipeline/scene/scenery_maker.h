@@ -1,0 +1,49 @@
+/* Puts scenery together from whatever format: nodes, triangles, motions. Surfaces are gathered by
+ * node and become meshes at the end. */
+#ifndef GOPURA_PIPELINE_SCENE_SCENERY_MAKER_H
+#define GOPURA_PIPELINE_SCENE_SCENERY_MAKER_H
+
+#include "format/scenery.h"
+#include "pipeline/scene/soup.h"
+
+/* The triangles of a node that become meshes. */
+struct scenery_sheet;
+
+/* Zeroed is empty. */
+struct scenery_maker {
+	struct scenery out; /* its meshes are made at the end */
+	uint32_t node_room, motion_room, touch_room, track_room, number_room, mesh_room;
+	struct scenery_sheet *sheets; /* owned */
+	uint32_t sheet_count, sheet_room, triangle_count;
+};
+
+/* A place that changes nothing. */
+extern const struct scenery_place scenery_at_rest;
+/* Sets out to the quaternion of a turn about an axis of any length; one without a length turns
+ * nothing. */
+void scenery_turn(float out[4], const float axis[3], float angle_rad);
+
+/* All return 0, -EFBIG: past a limit of format/scenery.h, or -ENOMEM. */
+
+must_check int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node,
+				uint32_t *number);
+/* Adds triangles in the node's metres. Edges where faces meet at more than crease_rad stay sharp;
+ * across others light is smooth. */
+must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+				   const struct soup_triangle *triangles, uint32_t count,
+				   float crease_rad);
+/* Tracks follow that are added after it. */
+must_check int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
+				  uint32_t *number);
+/* Adds a track to the last motion; *values is set to room for key_count values, borrowed until the
+ * next call. */
+must_check int scenery_add_track(struct scenery_maker *maker, uint32_t node,
+				 enum scenery_target target, const float *times, uint32_t key_count,
+				 float **values);
+must_check int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motion);
+
+/* Makes the meshes; *out is the caller's, and the maker is empty. */
+must_check int scenery_maker_end(struct scenery_maker *maker, struct scenery *out);
+void scenery_maker_finish(struct scenery_maker *maker); /* NULL is fine */
+
+#endif

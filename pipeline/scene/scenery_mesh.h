@@ -1,0 +1,30 @@
+/* Makes meshes of the triangles that hang on a node of scenery. Private to pipeline/scene. */
+#ifndef GOPURA_PIPELINE_SCENE_SCENERY_MESH_H
+#define GOPURA_PIPELINE_SCENE_SCENERY_MESH_H
+
+#include "format/scenery.h"
+#include "pipeline/scene/soup.h"
+
+struct scenery_corner {
+	float position[3], normal[3];
+	uint8_t rgb[3];
+};
+
+struct scenery_sheet {
+	uint32_t node;
+	bool has_two_sides;
+	struct scenery_corner (*triangles)[3]; /* owned */
+	uint32_t count, room;
+};
+
+/* Adds triangles, with normals that are smooth where faces meet at no more than crease_rad.
+ * Triangles without an area are left out. -EFBIG, -ENOMEM. */
+must_check int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
+				 uint32_t count, float crease_rad);
+/* Appends the sheet's meshes to out->meshes, as many as its vertices need; all have one lattice.
+ * -EFBIG, -ENOMEM. */
+must_check int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,
+				    uint32_t *mesh_room);
+void scenery_sheet_finish(struct scenery_sheet *sheet); /* frees the triangles */
+
+#endif

@@ -1,0 +1,328 @@
+/* Follows routes from each TimeSensor: back to the TouchSensors that start it, and on through
+ * interpolators to what they set. What such a chain says becomes a motion; other routes have no
+ * meaning without an event loop, and are named in warnings. */
+#include "pipeline/scene/vrml_motions.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "pipeline/scene/vrml_graph.h"
+
+enum { INSTANCES_MAX = 1 << 14, ROUTES_MAX = 4096 };
+
+struct follow {
+	struct scenery_maker *maker;
+	const struct vrml_route **routes; /* owned; in the order of the files */
+	bool *used;                       /* owned; by route */
+	uint32_t count;
+	const struct vrml_instances *instances;
+	struct diagnostics *diagnostics, *warnings;
+};
+
+int vrml_instances_add(struct vrml_instances *instances, const struct vrml_node *of, uint32_t node)
+{
+	int rc = ARRAY_RESERVE(instances->items, instances->room, (uint64_t)instances->count + 1,
+			       INSTANCES_MAX);
+
+	if (rc == 0)
+		instances->items[instances->count++] = (struct vrml_instance){ of, node };
+	return rc;
+}
+
+void vrml_instances_finish(struct vrml_instances *instances)
+{
+	free(instances->items);
+	*instances = (struct vrml_instances){ 0 };
+}
+
+/* Whether an event has this name, with or without set_ before it. */
+static bool sets(const char *event, const char *field)
+{
+	return strcmp(strncmp(event, "set_", 4) == 0 ? event + 4 : event, field) == 0;
+}
+
+/* Whether a route goes from an event of a node to one of a type. */
+static bool leads(const struct vrml_route *route, const struct vrml_node *from, const char *out,
+		  const char *type, const char *in)
+{
+	return *route->from == from && strcmp(route->out, out) == 0 && *route->to &&
+	       vrml_is(*route->to, type) && sets(route->in, in);
+}
+
+/* ---- tracks */
+
+/* What an interpolator may set. */
+static const struct sink {
+	const char *interpolator, *node, *field;
+	enum scenery_target target;
+	uint32_t width; /* of the interpolator's values */
+} sinks[] = {
+	{ "PositionInterpolator", "Transform", "translation", SCENERY_MOVE, 3 },
+	{ "PositionInterpolator", "Transform", "scale", SCENERY_SCALE, 3 },
+	{ "OrientationInterpolator", "Transform", "rotation", SCENERY_TURN, 4 },
+	{ "ScalarInterpolator", "Material", "transparency", SCENERY_OPACITY, 1 },
+};
+
+static void set_value(float *out, const struct sink *sink, const float *from)
+{
+	switch (sink->target) {
+	case SCENERY_TURN:
+		scenery_turn(out, from, from[3]);
+		break;
+	case SCENERY_OPACITY:
+		out[0] = fminf(fmaxf(1 - from[0], 0), 1);
+		break;
+	default:
+		memcpy(out, from, 3 * sizeof(*out));
+		break;
+	}
+}
+
+/* Returns what is wrong with an interpolator, or NULL. */
+static const char *fault_of(const struct vrml_value *keys, const struct vrml_value *values,
+			    uint32_t width)
+{
+	if (!keys || !values || keys->count == 0)
+		return "has no keys";
+	if (values->count != keys->count * width)
+		return "has another number of keys than of values";
+	for (uint32_t i = 0; i < keys->count; i++)
+		if (keys->floats[i] < 0 || keys->floats[i] > 1 ||
+		    (i > 0 && keys->floats[i] < keys->floats[i - 1]))
+			return "has keys that do not ascend from 0 to 1";
+	return NULL;
+}
+
+static int add_tracks(const struct follow *follow, const struct vrml_node *interpolator,
+		      const struct vrml_node *target, const struct sink *sink)
+{
+	const struct vrml_value *keys = vrml_get(interpolator, "key");
+	const struct vrml_value *values = vrml_get(interpolator, "keyValue");
+	const uint32_t wide = scenery_width(sink->target);
+	const char *fault = fault_of(keys, values, sink->width);
+	int rc = 0;
+
+	if (fault)
+		return diagnostics_add(follow->diagnostics, -EBADMSG, interpolator->file,
+				       interpolator->line, "%s %s; correct them",
+				       interpolator->type->name, fault);
+	for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++) {
+		const struct vrml_instance *instance = &follow->instances->items[i];
+		float *out;
+
+		if (instance->of != target)
+			continue;
+		rc = scenery_add_track(follow->maker, instance->node, sink->target, keys->floats,
+				       keys->count, &out);
+		for (uint32_t k = 0; rc == 0 && k < keys->count; k++)
+			set_value(&out[k * wide], sink, &values->floats[k * sink->width]);
+	}
+	return rc;
+}
+
+/* Adds what one interpolator sets. */
+static int follow_interpolator(const struct follow *follow, const struct vrml_node *interpolator)
+{
+	int rc = 0;
+
+	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
+		for (size_t s = 0; s < ARRAY_COUNT(sinks) && rc == 0; s++) {
+			const struct sink *sink = &sinks[s];
+
+			if (!vrml_is(interpolator, sink->interpolator) ||
+			    !leads(follow->routes[r], interpolator, "value_changed", sink->node,
+				   sink->field))
+				continue;
+			follow->used[r] = true;
+			rc = add_tracks(follow, interpolator, *follow->routes[r]->to, sink);
+		}
+	return rc;
+}
+
+/* ---- timers */
+
+static bool is_interpolator(const struct vrml_node *node)
+{
+	for (size_t s = 0; s < ARRAY_COUNT(sinks); s++)
+		if (vrml_is(node, sinks[s].interpolator))
+			return true;
+	return false;
+}
+
+static int add_touches(const struct follow *follow, const struct vrml_node *timer, uint32_t motion,
+		       uint32_t *touches)
+{
+	int rc = 0;
+
+	for (uint32_t r = 0; r < follow->count; r++) {
+		const struct vrml_route *route = follow->routes[r];
+
+		if (*route->to != timer || !*route->from || !vrml_is(*route->from, "TouchSensor") ||
+		    strcmp(route->out, "touchTime") != 0 || !sets(route->in, "startTime"))
+			continue;
+		follow->used[r] = true;
+		for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++)
+			if (follow->instances->items[i].of == *route->from) {
+				rc = scenery_add_touch(follow->maker,
+						       follow->instances->items[i].node, motion);
+				++*touches;
+			}
+	}
+	return rc;
+}
+
+/* A motion without a beginning or an effect is taken back, with its touches and tracks. */
+static void take_back(const struct follow *follow, const struct vrml_node *timer, uint32_t touches,
+		      const char *why)
+{
+	struct scenery *out = &follow->maker->out;
+	const struct scenery_motion *motion = &out->motions[--out->motion_count];
+
+	if (motion->track_count > 0)
+		out->number_count = out->tracks[motion->first_track].first;
+	out->track_count = motion->first_track;
+	out->touch_count -= touches;
+	diagnostics_add(follow->warnings, 0, timer->file, timer->line,
+			"this TimeSensor %s; it was left out", why);
+}
+
+static int follow_timer(const struct follow *follow, const struct vrml_node *timer)
+{
+	struct scenery_motion motion = { .duration_s = vrml_get_float(timer, "cycleInterval", 1),
+					 .loops = vrml_get_integer(timer, "loop", 0) != 0 };
+	uint32_t number = 0, touches = 0;
+	int rc;
+
+	if (!(motion.duration_s > 0 && motion.duration_s <= 3600))
+		return diagnostics_add(follow->diagnostics, -EBADMSG, timer->file, timer->line,
+				       "cycleInterval must be above 0 and at most 3600 seconds");
+	rc = scenery_add_motion(follow->maker, &motion, &number);
+	if (rc == 0)
+		rc = add_touches(follow, timer, number, &touches);
+	for (uint32_t r = 0; r < follow->count && rc == 0; r++) {
+		const struct vrml_route *route = follow->routes[r];
+
+		if (*route->from != timer || strcmp(route->out, "fraction_changed") != 0 ||
+		    !*route->to || !is_interpolator(*route->to) || !sets(route->in, "fraction"))
+			continue;
+		follow->used[r] = true;
+		rc = follow_interpolator(follow, *route->to);
+	}
+	if (rc < 0)
+		return rc;
+	if (follow->maker->out.motions[number].track_count == 0)
+		take_back(follow, timer, touches, "moves nothing that is seen");
+	else if (!vrml_get_integer(timer, "enabled", 1))
+		take_back(follow, timer, touches, "is not enabled");
+	else if (touches == 0 && !motion.loops)
+		take_back(follow, timer, touches,
+			  "is started by no TouchSensor's touchTime and does not loop");
+	return 0;
+}
+
+/* ---- motions that return */
+
+static bool is_set_by_another(const struct scenery *scenery, uint32_t motion,
+			      const struct scenery_track *track)
+{
+	const struct scenery_motion *own = &scenery->motions[motion];
+
+	for (uint32_t t = 0; t < scenery->track_count; t++)
+		if ((t < own->first_track || t >= own->first_track + own->track_count) &&
+		    scenery->tracks[t].node == track->node &&
+		    scenery->tracks[t].target == track->target)
+			return true;
+	return false;
+}
+
+/* A motion that ends elsewhere than it began would jump when it is touched again, and VRML without
+ * programs cannot say that a door closes. So it runs backwards, unless another motion is there for
+ * it. */
+static void find_returns(struct scenery *scenery, uint32_t first)
+{
+	for (uint32_t m = first; m < scenery->motion_count; m++) {
+		struct scenery_motion *motion = &scenery->motions[m];
+		bool ends_elsewhere = false, is_alone = true;
+
+		for (uint32_t t = 0; t < motion->track_count; t++) {
+			const struct scenery_track *track =
+				&scenery->tracks[motion->first_track + t];
+			const uint32_t width = scenery_width(track->target);
+			const float *values = &scenery->numbers[track->first + track->key_count];
+
+			is_alone = is_alone && !is_set_by_another(scenery, m, track);
+			for (uint32_t k = 0; k < width; k++)
+				ends_elsewhere =
+					ends_elsewhere ||
+					fabsf(values[k] -
+					      values[(track->key_count - 1) * width + k]) > 1e-4f;
+		}
+		motion->returns = !motion->loops && is_alone && ends_elsewhere;
+	}
+}
+
+/* ---- all */
+
+static bool was_followed(const struct follow *follow, uint32_t route)
+{
+	for (uint32_t r = 0; r < route; r++)
+		if (*follow->routes[r]->from == *follow->routes[route]->from &&
+		    strcmp(follow->routes[r]->out, "fraction_changed") == 0)
+			return true;
+	return false;
+}
+
+static int follow_all(const struct follow *follow)
+{
+	const uint32_t first = follow->maker->out.motion_count;
+	int rc = 0;
+
+	for (uint32_t r = 0; r < follow->count && rc == 0; r++) {
+		const struct vrml_node *from = *follow->routes[r]->from;
+
+		if (from && vrml_is(from, "TimeSensor") &&
+		    strcmp(follow->routes[r]->out, "fraction_changed") == 0 &&
+		    !was_followed(follow, r))
+			rc = follow_timer(follow, from);
+	}
+	find_returns(&follow->maker->out, first);
+	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
+		if (!follow->used[r])
+			diagnostics_add(follow->warnings, 0, follow->routes[r]->file,
+					follow->routes[r]->line,
+					"ROUTE from %.40s to %.40s is not kept; docs/scenery.md "
+					"says which are",
+					follow->routes[r]->out, follow->routes[r]->in);
+	return rc;
+}
+
+int vrml_motions_add(struct scenery_maker *maker, const struct vrml *scene,
+		     const struct vrml_instances *instances, struct diagnostics *diagnostics,
+		     struct diagnostics *warnings)
+{
+	struct follow follow = { .maker = maker,
+				 .count = scene->route_count,
+				 .instances = instances,
+				 .diagnostics = diagnostics,
+				 .warnings = warnings };
+	uint32_t at = scene->route_count;
+	int rc = -ENOMEM;
+
+	if (scene->route_count > ROUTES_MAX)
+		return diagnostics_add(
+			diagnostics, -EFBIG, scene->routes->file, scene->routes->line,
+			"over %d ROUTE; split the scene into several files", ROUTES_MAX);
+	follow.routes = calloc((size_t)scene->route_count + 1, sizeof(*follow.routes));
+	follow.used = calloc((size_t)scene->route_count + 1, sizeof(*follow.used));
+	for (const struct vrml_route *route = scene->routes; follow.routes && route;
+	     route = route->before)
+		follow.routes[--at] = route;
+	if (follow.routes && follow.used)
+		rc = follow_all(&follow);
+	free(follow.routes);
+	free(follow.used);
+	return rc;
+}

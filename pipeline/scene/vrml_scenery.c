@@ -1,0 +1,289 @@
+/* Walks the graph of a scene. A Transform with something moving below it becomes a node of the
+ * scenery; the places of all others are put into the triangles, which costs a terminal nothing. */
+#include "pipeline/scene/vrml_scenery.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "base/map.h"
+#include "pipeline/scene/vrml_graph.h"
+#include "pipeline/scene/vrml_motions.h"
+#include "pipeline/scene/vrml_shapes.h"
+
+/* Whether a node, or something below it, moves or is touched. */
+enum moving { STILL, MOVING, TARGET /* moves, and what is above it is not judged yet */ };
+
+struct walk {
+	struct scenery_maker *maker;
+	struct vrml_instances instances;
+	struct map moving; /* node -> enum moving; none: not judged yet */
+	struct diagnostics *diagnostics, *warnings;
+	uint32_t visits, depth;
+	bool has_pictures;
+};
+
+static map_key key_of(const struct vrml_node *node)
+{
+	return (map_key)(uintptr_t)node;
+}
+
+static int fail(const struct walk *walk, int rc, const struct vrml_node *node)
+{
+	return diagnostics_add(walk->diagnostics, rc, node->file, node->line, "%s",
+			       rc == -EFBIG ? "more than scenery may have; simplify the scene, or "
+					      "use it as a scan"
+					    : "too large for this machine's memory");
+}
+
+/* ---- what moves */
+
+static int mark_targets(struct walk *walk, const struct vrml *scene)
+{
+	int rc = 0;
+
+	for (const struct vrml_route *route = scene->routes; route && rc == 0;
+	     route = route->before)
+		if (*route->to &&
+		    (vrml_is(*route->to, "Transform") || vrml_is(*route->to, "Material")))
+			rc = map_set(&walk->moving, key_of(*route->to), TARGET);
+	return rc;
+}
+
+static bool has_sensor(const struct vrml_node *node)
+{
+	uint32_t count;
+	struct vrml_node *const *children = vrml_children(node, &count);
+
+	for (uint32_t i = 0; i < count; i++)
+		if (vrml_is(children[i], "TouchSensor"))
+			return true;
+	return false;
+}
+
+static bool is_moving(const struct walk *walk, const struct vrml_node *node)
+{
+	uint64_t found = map_get(&walk->moving, key_of(node));
+
+	return found == MOVING || found == TARGET;
+}
+
+/* Marks the nodes above what moves. Each is judged once. */
+static int mark(struct walk *walk, const struct vrml_node *node)
+{
+	const struct vrml_node *material;
+	struct vrml_node *const *children;
+	uint32_t count;
+	uint64_t was = map_get(&walk->moving, key_of(node));
+	bool moves = was == TARGET || has_sensor(node);
+	int rc = 0;
+
+	if (was != MAP_NONE && was != TARGET)
+		return 0;
+	if (walk->depth == VRML_DEPTH_MAX)
+		return diagnostics_add(walk->diagnostics, -EFBIG, node->file, node->line,
+				       "USE nests nodes over %d deep; flatten the scene",
+				       VRML_DEPTH_MAX);
+	walk->depth++;
+	material = vrml_is(node, "Shape")
+			   ? vrml_node_of(vrml_node_of(node, "appearance", "Appearance"),
+					  "material", "Material")
+			   : NULL;
+	moves = moves || (material && is_moving(walk, material));
+	children = vrml_children(node, &count);
+	for (uint32_t i = 0; i < count && rc == 0; i++) {
+		rc = mark(walk, children[i]);
+		moves = moves || is_moving(walk, children[i]);
+	}
+	walk->depth--;
+	if (rc == 0 && map_set(&walk->moving, key_of(node), moves ? MOVING : STILL) < 0)
+		rc = fail(walk, -ENOMEM, node);
+	return rc;
+}
+
+/* ---- nodes */
+
+static void get_turn(float out[4], const struct vrml_node *node, const char *field)
+{
+	float rotation[4];
+
+	vrml_get_floats(rotation, node, field, 4, (const float[4]){ 0, 0, 1, 0 });
+	scenery_turn(out, rotation, rotation[3]);
+}
+
+static void get_place(struct scenery_place *out, const struct vrml_node *node)
+{
+	static const float zero[3], one[3] = { 1, 1, 1 };
+
+	vrml_get_floats(out->move_m, node, "translation", 3, zero);
+	vrml_get_floats(out->centre_m, node, "center", 3, zero);
+	vrml_get_floats(out->scale, node, "scale", 3, one);
+	get_turn(out->turn, node, "rotation");
+	get_turn(out->stretch, node, "scaleOrientation");
+}
+
+/* Adds a node for one of the scene, and notes that it stands for it. */
+static int add_node(struct walk *walk, const struct vrml_node *of, uint32_t parent,
+		    uint32_t *number)
+{
+	struct scenery_node node = { .parent = parent,
+				     .layer = SCENERY_NONE,
+				     .place = scenery_at_rest };
+	int rc;
+
+	if (vrml_is(of, "Transform"))
+		get_place(&node.place, of);
+	rc = scenery_add_node(walk->maker, &node, number);
+	if (rc == 0)
+		rc = vrml_instances_add(&walk->instances, of, *number);
+	return rc;
+}
+
+/* ---- shapes */
+
+static float crease_of(const struct vrml_node *geometry)
+{
+	const float round = 0.5f, given = 1;
+	float crease = 0;
+
+	if (vrml_is(geometry, "Sphere") || vrml_is(geometry, "Cone") ||
+	    vrml_is(geometry, "Cylinder"))
+		return round;
+	if (vrml_field_named(geometry->type, "creaseAngle", 11) >= 0)
+		crease = vrml_get_float(geometry, "creaseAngle", 0);
+	/* The exporter had normals, so it had round surfaces. */
+	if (crease <= 0 && vrml_field_named(geometry->type, "normal", 6) >= 0 &&
+	    vrml_get_node(geometry, "normal"))
+		return given;
+	return crease > 0 ? crease : 0;
+}
+
+static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_t node,
+		       const float place[16], bool is_mirrored)
+{
+	const struct vrml_node *look = vrml_node_of(shape, "appearance", "Appearance");
+	const struct vrml_node *material = vrml_node_of(look, "material", "Material");
+	const struct vrml_node *geometry = vrml_get_node(shape, "geometry");
+	struct soup soup = { .texture = SOUP_NO_TEXTURE };
+	uint8_t rgb[3] = { 204, 204, 204 };
+	bool has_two_sides;
+	int rc;
+
+	if (!geometry)
+		return 0;
+	if (material)
+		vrml_material_colour(rgb, material);
+	walk->has_pictures |= look && vrml_get_node(look, "texture");
+	memcpy(soup.place, place, sizeof(soup.place));
+	rc = vrml_shape_add(&soup, geometry, rgb, is_mirrored, walk->diagnostics);
+	if (rc == 0)
+		diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
+				"%s has no surface; it was left out", geometry->type->name);
+	has_two_sides = vrml_field_named(geometry->type, "solid", 5) >= 0 &&
+			!vrml_get_integer(geometry, "solid", 1);
+	if (rc > 0) {
+		rc = scenery_add_surface(walk->maker, node, has_two_sides, soup.triangles,
+					 soup.count, crease_of(geometry));
+		if (rc < 0)
+			rc = fail(walk, rc, geometry);
+	}
+	soup_finish(&soup);
+	return rc;
+}
+
+static int add_shape(struct walk *walk, const struct vrml_node *shape, uint32_t node,
+		     const float place[16], bool is_mirrored)
+{
+	const struct vrml_node *material = vrml_node_of(
+		vrml_node_of(shape, "appearance", "Appearance"), "material", "Material");
+
+	if (material && is_moving(walk, material)) {
+		int rc = add_node(walk, material, node, &node);
+
+		if (rc < 0)
+			return fail(walk, rc, shape);
+	}
+	return add_surface(walk, shape, node, place, is_mirrored);
+}
+
+/* ---- groups */
+
+/* Notes which node a touch sensor beside these children answers for. */
+static int note_sensors(struct walk *walk, struct vrml_node *const *children, uint32_t count,
+			uint32_t node)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < count && rc == 0; i++)
+		if (vrml_is(children[i], "TouchSensor"))
+			rc = vrml_instances_add(&walk->instances, children[i], node);
+	return rc;
+}
+
+static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
+		 const float parent[16], bool is_mirrored)
+{
+	struct vrml_node *const *children;
+	float place[16];
+	uint32_t count;
+	int rc = 0;
+
+	if (++walk->visits > VRML_VISITS_MAX)
+		return diagnostics_add(walk->diagnostics, -EFBIG, of->file, of->line,
+				       "USE repeats nodes over %d times; split the scene",
+				       VRML_VISITS_MAX);
+	if (vrml_is(of, "Shape"))
+		return add_shape(walk, of, node, parent, is_mirrored);
+	memcpy(place, parent, sizeof(place));
+	if (vrml_is(of, "Transform")) {
+		float own[16];
+
+		vrml_transform(own, vrml_identity, of);
+		is_mirrored ^= vrml_mirrors(own);
+		if (!is_moving(walk, of))
+			vrml_transform(place, parent, of);
+	}
+	if (is_moving(walk, of) && (vrml_is(of, "Transform") || has_sensor(of)))
+		rc = add_node(walk, of, node, &node);
+	children = vrml_children(of, &count);
+	if (rc == 0)
+		rc = note_sensors(walk, children, count, node);
+	if (rc < 0)
+		return fail(walk, rc, of);
+	for (uint32_t i = 0; i < count && rc == 0; i++)
+		rc = visit(walk, children[i], node, place, is_mirrored);
+	return rc;
+}
+
+static int add_all(struct walk *walk, const struct vrml *scene, uint32_t node)
+{
+	int rc = mark_targets(walk, scene);
+
+	for (uint32_t i = 0; i < scene->root_count && rc == 0; i++)
+		rc = mark(walk, scene->roots[i]);
+	if (rc == 0)
+		rc = note_sensors(walk, scene->roots, scene->root_count, node);
+	for (uint32_t i = 0; i < scene->root_count && rc == 0; i++)
+		rc = visit(walk, scene->roots[i], node, vrml_identity, false);
+	if (rc == 0)
+		rc = vrml_motions_add(walk->maker, scene, &walk->instances, walk->diagnostics,
+				      walk->warnings);
+	return rc;
+}
+
+int vrml_scenery_add(struct scenery_maker *maker, const struct vrml *scene, uint32_t node,
+		     struct diagnostics *diagnostics, struct diagnostics *warnings)
+{
+	struct walk walk = { .maker = maker, .diagnostics = diagnostics, .warnings = warnings };
+	const uint32_t errors = diagnostics ? diagnostics->error_count : 0;
+	int rc = add_all(&walk, scene, node);
+
+	if (rc < 0 && scene->root_count > 0 && diagnostics && diagnostics->error_count == errors)
+		fail(&walk, rc, scene->roots[0]);
+	if (rc == 0 && walk.has_pictures)
+		diagnostics_add(
+			warnings, 0, scene->roots[0]->file, 0,
+			"pictures on surfaces are left out: scenery has one colour a corner");
+	vrml_instances_finish(&walk.instances);
+	map_finish(&walk.moving);
+	return rc;
+}

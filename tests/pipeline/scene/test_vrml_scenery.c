@@ -1,0 +1,175 @@
+/* Scenes as scenery: what moves becomes nodes and motions, and what does not, triangles. */
+#include "pipeline/scene/vrml_scenery.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+#include "format/scenery_code.h"
+#include "tests/check.h"
+
+#define HEAD "#VRML V2.0 utf8\n"
+
+/* A door of 1 x 2 on a hinge, beside a wall that is moved and does not move. */
+static const char door[] =
+	HEAD "Transform { translation 5 0 0 children Shape { geometry Box {} } }\n"
+	     "Transform { translation 0 1 0 children [\n"
+	     "  DEF T TouchSensor {}\n"
+	     "  DEF Hinge Transform { center -0.5 0 0 children\n"
+	     "    Shape { geometry DEF B Box { size 1 2 0.1 } } } ] }\n"
+	     "DEF C TimeSensor { cycleInterval 2 }\n"
+	     "DEF O OrientationInterpolator { key [ 0 1 ] keyValue [ 0 1 0 0, 0 1 0 1.5708 ] }\n"
+	     "ROUTE T.touchTime TO C.set_startTime\n"
+	     "ROUTE C.fraction_changed TO O.set_fraction\n"
+	     "ROUTE O.value_changed TO Hinge.rotation\n";
+
+static int make(struct scenery *out, const char *text, struct diagnostics *diagnostics,
+		struct diagnostics *warnings)
+{
+	const struct scenery_node root = { .parent = SCENERY_NONE,
+					   .layer = SCENERY_NONE,
+					   .place = scenery_at_rest };
+	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
+	const struct vrml_options options = { 0 };
+	struct scenery_maker maker = { 0 };
+	struct vrml *scene = NULL;
+	uint32_t node = 0;
+	int rc = vrml_read(&scene, bytes, "a.wrl", &options, diagnostics, warnings);
+
+	*out = (struct scenery){ 0 };
+	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	if (rc == 0)
+		rc = vrml_scenery_add(&maker, scene, node, diagnostics, warnings);
+	if (rc == 0)
+		CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
+	scenery_maker_finish(&maker);
+	vrml_destroy(scene);
+	return rc;
+}
+
+static void a_door_turns_on_its_hinge_when_it_is_touched(void **state)
+{
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+	const float *values;
+
+	(void)state;
+	CHECK(make(&s, door, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	/* the root, the group that is touched, the hinge */
+	CHECK(s.node_count == 3 && s.nodes[2].parent == 1 && s.nodes[1].parent == 0);
+	CHECK(s.nodes[1].place.move_m[1] == 1 && s.nodes[2].place.centre_m[0] == -0.5f);
+	CHECK(s.motion_count == 1 && s.motions[0].duration_s == 2 && s.motions[0].returns);
+	CHECK(s.touch_count == 1 && s.touches[0].node == 1);
+	CHECK(s.track_count == 1 && s.tracks[0].node == 2 && s.tracks[0].target == SCENERY_TURN);
+	values = &s.numbers[s.tracks[0].first + 2];
+	CHECK(values[3] == 1 && fabsf(values[4 + 1] - sqrtf(0.5f)) < 1e-4f);
+	/* The wall is in its place already; boxes have 24 vertices, for their edges are sharp. */
+	CHECK(s.mesh_count == 2 && s.meshes[0].node == 0 && s.meshes[1].node == 2);
+	CHECK(s.meshes[0].origin_m[0] == 4 && s.meshes[0].vertex_count == 24);
+	CHECK(scenery_triangles(&s) == 24);
+	scenery_finish(&s);
+}
+
+static void a_node_that_is_used_twice_moves_twice(void **state)
+{
+	static const char twice[] =
+		HEAD "DEF G Transform { children Shape { geometry Sphere {} } }\n"
+		     "Transform { translation 9 0 0 children USE G }\n"
+		     "DEF C TimeSensor { loop TRUE cycleInterval 8 }\n"
+		     "DEF P PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 1 0 ] }\n"
+		     "ROUTE C.fraction_changed TO P.set_fraction\n"
+		     "ROUTE P.value_changed TO G.set_translation\n";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, twice, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.motion_count == 1 && s.motions[0].loops && !s.motions[0].returns);
+	CHECK(s.track_count == 2 && s.tracks[0].node != s.tracks[1].node);
+	/* Light is smooth on a sphere: its corners are shared. */
+	CHECK(s.meshes[0].vertex_count < s.meshes[0].triangle_count);
+	scenery_finish(&s);
+}
+
+static void what_becomes_transparent_is_a_node(void **state)
+{
+	static const char fading[] = HEAD
+		"Group { children [ DEF T TouchSensor {} Shape { geometry Box {}\n"
+		"  appearance Appearance { material DEF M Material {} } } ] }\n"
+		"DEF C TimeSensor {} DEF S ScalarInterpolator { key [ 0 1 ] keyValue [ 0 0.75 ] }\n"
+		"ROUTE T.touchTime TO C.startTime ROUTE C.fraction_changed TO S.set_fraction\n"
+		"ROUTE S.value_changed TO M.transparency";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, fading, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.track_count == 1 && s.tracks[0].target == SCENERY_OPACITY);
+	CHECK(s.numbers[s.tracks[0].first + 2] == 1 && s.numbers[s.tracks[0].first + 3] == 0.25f);
+	CHECK(s.meshes[0].node == s.tracks[0].node);
+	scenery_finish(&s);
+}
+
+static void what_is_not_kept_is_named_with_its_line(void **state)
+{
+	static const struct {
+		const char *text, *warning;
+	} cases[] = {
+		{ HEAD
+		  "DEF T TouchSensor {}\nDEF L DirectionalLight {}\nShape { geometry Box {} }\n"
+		  "ROUTE T.isOver TO L.on",
+		  "a.wrl:5: ROUTE from isOver to on is not kept; docs/scenery.md says which are" },
+		{ HEAD "DEF G Transform { children Shape { geometry Box {} } }\n"
+		       "DEF C TimeSensor {}\n"
+		       "DEF P PositionInterpolator { key 0 keyValue 0 0 0 }\n"
+		       "ROUTE C.fraction_changed TO P.set_fraction\n"
+		       "ROUTE P.value_changed TO G.translation",
+		  "a.wrl:3: this TimeSensor is started by no TouchSensor's touchTime and does not "
+		  "loop; it was left out" },
+		{ HEAD "Shape { geometry Box {} }\nShape { geometry PointSet {} }",
+		  "a.wrl:3: PointSet has no surface; it was left out" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(cases) / sizeof(*cases); i++) {
+		struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+		struct scenery s;
+
+		CHECK(make(&s, cases[i].text, &diagnostics, &warnings) == 0);
+		if (strcmp(diagnostics_cause(&warnings, 0), cases[i].warning) != 0)
+			fail_msg("case %zu: %s", i, diagnostics_cause(&warnings, 0));
+		CHECK(s.motion_count == 0 && s.track_count == 0 && s.number_count == 0);
+		scenery_finish(&s);
+	}
+}
+
+static void an_interpolator_without_sense_is_refused(void **state)
+{
+	static const char text[] =
+		HEAD "DEF G Transform { children Shape { geometry Box {} } }\n"
+		     "DEF C TimeSensor { loop TRUE }\n"
+		     "DEF P PositionInterpolator { key [ 0 1 ] keyValue 0 0 0 }\n"
+		     "ROUTE C.fraction_changed TO P.set_fraction\n"
+		     "ROUTE P.value_changed TO G.translation";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, text, &diagnostics, &warnings) == -EBADMSG);
+	CHECK(strcmp(diagnostics_cause(&diagnostics, 0),
+		     "a.wrl:4: PositionInterpolator has another number of keys than of values; "
+		     "correct them") == 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_door_turns_on_its_hinge_when_it_is_touched),
+		cmocka_unit_test(a_node_that_is_used_twice_moves_twice),
+		cmocka_unit_test(what_becomes_transparent_is_a_node),
+		cmocka_unit_test(what_is_not_kept_is_named_with_its_line),
+		cmocka_unit_test(an_interpolator_without_sense_is_refused),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
