@@ -20,6 +20,8 @@ struct command {
 int command_annotations(int argc, char **argv);
 /* build: makes a signed release from a content folder. */
 int command_build(int argc, char **argv);
+/* deform: bends a scan. */
+int command_deform(int argc, char **argv);
 /* hierarchy: makes the multiresolution hierarchy. */
 int command_hierarchy(int argc, char **argv);
 /* import: reads scans and reports what was repaired. */

@@ -11,6 +11,7 @@ static const struct command commands[] = {
 	{ "import", "read scans, report what was found and repaired", command_import },
 	{ "temple", "write the demo temple with any number of triangles", command_temple },
 	{ "reconstruct", "make one surface of aligned range images", command_reconstruct },
+	{ "deform", "bend a scan, such as a leaning pillar into a straight one", command_deform },
 	{ "publish", "make a signed release from what is built, or undo a release",
 	  command_publish },
 	{ "verify", "check everything in a release", command_verify },

@@ -39,7 +39,7 @@ may_enter() {
 	render/scene) answer="display plan patches lumigraph" ;;
 	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import" ;;
-	pipeline/octree) answer="import" ;;
+	pipeline/octree | pipeline/deform) answer="import" ;;
 	pipeline/hierarchy) answer="import material" ;;
 	pipeline/samples) answer="import content material hierarchy" ;;
 	pipeline/release) answer="keys import content hierarchy samples" ;;
@@ -62,7 +62,7 @@ is_public() {
 	local names name=${1##*/}
 	case $1 in
 	*_private.h | *_parts.h) return 1 ;;
-	pipeline/import/*) names="alignment import_scenery json manifest import import_report mesh mesh_edges mesh_file face_list ply sandbox scan_look transform" ;;
+	pipeline/import/*) names="alignment import_scenery json manifest import import_report mesh mesh_edges mesh_file mesh_places face_list ply sandbox scan_look transform" ;;
 	pipeline/scene/*) names="vrml vrml_text vrml_surface vrml_scenery scenery_maker soup" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
@@ -70,6 +70,7 @@ is_public() {
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct budget_mesh mesh_ply" ;;
+	pipeline/deform/*) names="deform deform_plan" ;;
 	pipeline/keys/*) names="keys keys_place keys_tuf" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;

@@ -1,0 +1,287 @@
+/* Runs the steps of a deformation over a mesh. */
+#include "pipeline/deform/deform.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "base/spill.h"
+#include "pipeline/deform/bend_split.h"
+#include "pipeline/deform/lattice_step.h"
+
+enum { RANGE_VERTICES = 1 << 14, LINE_PLACES = 257 };
+
+/* More triangles than this are no result but a tolerance that is too small. */
+enum { GROWTH_MAX = 8, TRIANGLES_LEAST = 4000000 };
+
+/* A tolerance that no eye sees, for those who do not say one. */
+#define TOLERANCE_OF_DIAGONAL 1e-4
+
+struct deforming {
+	struct mesh *mesh;              /* borrowed */
+	const struct deform_plan *plan; /* borrowed */
+	const char *path;
+	struct diagnostics *diagnostics;
+	struct deform_report *report;
+	uint32_t jobs;
+	double lines[3][LINE_PLACES][3];
+};
+
+/* ---- lines through the box */
+
+static void begin_lines(struct deforming *d)
+{
+	const struct mesh_measure *box = &d->report->before;
+
+	for (int axis = 0; axis < 3; axis++)
+		for (int i = 0; i < LINE_PLACES; i++)
+			for (int k = 0; k < 3; k++) {
+				const double low = (double)box->low[k], high = (double)box->high[k];
+				const double share = k == axis ? i / (LINE_PLACES - 1.0) : 0.5;
+
+				d->lines[axis][i][k] = low + share * (high - low);
+			}
+}
+
+static void measure_lines(const struct deforming *d, double length[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		length[axis] = 0;
+		for (int i = 1; i < LINE_PLACES; i++) {
+			const double *a = d->lines[axis][i - 1], *b = d->lines[axis][i];
+
+			length[axis] +=
+				sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) +
+				     (a[2] - b[2]) * (a[2] - b[2]));
+		}
+	}
+}
+
+static void move_lines(struct deforming *d, const struct warp *warp)
+{
+	for (int axis = 0; axis < 3; axis++)
+		for (int i = 0; i < LINE_PLACES; i++) {
+			double to[3];
+
+			warp->place(warp->data, d->lines[axis][i], to, NULL);
+			memcpy(d->lines[axis][i], to, sizeof(to));
+		}
+}
+
+/* ---- vertices */
+
+struct growth {
+	double least, most;
+	uint32_t least_at; /* the vertex */
+};
+
+struct mover {
+	struct mesh *mesh;
+	const struct warp *warp;
+	struct growth *ranges; /* of each range of vertices; owned */
+};
+
+/* The determinant of the derivatives: how much space grows there; below 0, it is turned inside out.
+ */
+static double determinant(double j[3][3])
+{
+	return j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) -
+	       j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
+	       j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]);
+}
+
+static double growth_at(const struct mover *m, uint32_t v, double to[3])
+{
+	const float *position = m->mesh->positions[v];
+	const double from[3] = { (double)position[0], (double)position[1], (double)position[2] };
+	double jacobian[3][3];
+
+	m->warp->place(m->warp->data, from, to, jacobian);
+	return determinant(jacobian);
+}
+
+static int check_range(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	const struct mover *m = user;
+	struct growth growth = { INFINITY, -INFINITY, first };
+	(void)worker;
+
+	for (uint32_t v = first; v < after; v++) {
+		double to[3];
+		const double grows = growth_at(m, v, to);
+
+		/* Written so that what is not a number counts as the least. */
+		if (!(grows >= growth.least)) {
+			growth.least = isfinite(grows) ? grows : -INFINITY;
+			growth.least_at = v;
+		}
+		growth.most = fmax(growth.most, grows);
+		spill_pass(v);
+	}
+	m->ranges[first / RANGE_VERTICES] = growth;
+	return 0;
+}
+
+static int move_range(void *user, uint32_t first, uint32_t after, uint32_t worker)
+{
+	const struct mover *m = user;
+	(void)worker;
+
+	for (uint32_t v = first; v < after; v++) {
+		double to[3];
+
+		growth_at(m, v, to);
+		for (int k = 0; k < 3; k++)
+			m->mesh->positions[v][k] = (float)to[k];
+		spill_pass(v);
+	}
+	return 0;
+}
+
+static int refuse_fold(const struct deforming *d, const struct deform_step *step,
+		       const double low[3], const double high[3], const struct growth *growth)
+{
+	const float *at = d->mesh->positions[growth->least_at];
+	const double place[3] = { (double)at[0], (double)at[1], (double)at[2] };
+	struct lattice_blame blame;
+	int rc = lattice_step_blame(&blame, step, low, high, place);
+
+	if (rc < 0)
+		return rc;
+	return diagnostics_add(d->diagnostics, -EDOM, d->path,
+			       blame.line > 0 ? blame.line : step->line,
+			       "the scan would fold over at %g %g %g: move point %d %d %d of level "
+			       "%u less, or its neighbours with it",
+			       place[0], place[1], place[2], blame.point[0], blame.point[1],
+			       blame.point[2], blame.level);
+}
+
+/* Checks all vertices, and moves them if none folds. */
+static int move_vertices(struct deforming *d, const struct deform_step *step,
+			 const struct warp *warp, const double low[3], const double high[3])
+{
+	const uint32_t count = d->mesh->vertex_count;
+	const uint32_t ranges = (count + RANGE_VERTICES - 1) / RANGE_VERTICES;
+	struct mover m = { d->mesh, warp, calloc(ranges + 1, sizeof(*m.ranges)) };
+	struct growth growth = { INFINITY, -INFINITY, 0 };
+	int rc = m.ranges ? parallel_ranges(d->jobs, count, RANGE_VERTICES, check_range, &m)
+			  : -ENOMEM;
+
+	for (uint32_t i = 0; i < ranges && rc == 0; i++) {
+		if (m.ranges[i].least < growth.least) {
+			growth.least = m.ranges[i].least;
+			growth.least_at = m.ranges[i].least_at;
+		}
+		growth.most = fmax(growth.most, m.ranges[i].most);
+	}
+	free(m.ranges);
+	if (rc == 0 && !(growth.least > 0))
+		rc = refuse_fold(d, step, low, high, &growth);
+	if (rc == 0) {
+		d->report->least_growth = fmin(d->report->least_growth, growth.least);
+		d->report->most_growth = fmax(d->report->most_growth, growth.most);
+		rc = parallel_ranges(d->jobs, count, RANGE_VERTICES, move_range, &m);
+	}
+	return rc;
+}
+
+/* ---- steps */
+
+/* A flat model still needs a box of some thickness. */
+static void find_box(const struct deforming *d, const struct deform_step *step, double low[3],
+		     double high[3])
+{
+	float box[2][3];
+	double thickest = 0;
+
+	mesh_box(d->mesh, box[0], box[1]);
+	for (int k = 0; k < 3; k++) {
+		low[k] = step->has_box ? step->low[k] : (double)box[0][k];
+		high[k] = step->has_box ? step->high[k] : (double)box[1][k];
+		thickest = fmax(thickest, high[k] - low[k]);
+	}
+	for (int k = 0; k < 3; k++)
+		if (high[k] - low[k] < thickest * 1e-6) {
+			low[k] -= thickest * 1e-3;
+			high[k] += thickest * 1e-3;
+		}
+}
+
+static uint32_t triangles_most(const struct deforming *d)
+{
+	const uint64_t most = (uint64_t)d->report->before.triangles * GROWTH_MAX + TRIANGLES_LEAST;
+
+	return most < INT32_MAX ? (uint32_t)most : INT32_MAX;
+}
+
+static int explain_split(const struct deforming *d, const struct deform_step *step, int rc)
+{
+	if (rc == -EDOM)
+		diagnostics_add(d->diagnostics, rc, d->path, step->line,
+				"the tolerance of %g is too small for a scan of this size: write a "
+				"larger \"tolerance\"",
+				d->report->tolerance);
+	if (rc == -EFBIG)
+		diagnostics_add(d->diagnostics, rc, d->path, step->line,
+				"the scan would have more than %u triangles: write a larger "
+				"\"tolerance\" than %g",
+				triangles_most(d), d->report->tolerance);
+	return rc;
+}
+
+static int do_step(struct deforming *d, const struct deform_step *step)
+{
+	struct control_lattice lattice;
+	struct warp warp;
+	double low[3], high[3];
+	int rc;
+
+	find_box(d, step, low, high);
+	rc = lattice_step_make(&lattice, step, low, high);
+	if (rc < 0)
+		return rc;
+	warp = lattice_warp(&lattice);
+	rc = explain_split(
+		d, step,
+		bend_split(d->mesh, &warp, d->report->tolerance, triangles_most(d), d->jobs));
+	if (rc == 0)
+		rc = move_vertices(d, step, &warp, low, high);
+	if (rc == 0)
+		move_lines(d, &warp);
+	control_lattice_finish(&lattice);
+	return rc;
+}
+
+static double diagonal(const struct mesh_measure *box)
+{
+	double sum = 0;
+
+	for (int k = 0; k < 3; k++)
+		sum += ((double)box->high[k] - (double)box->low[k]) *
+		       ((double)box->high[k] - (double)box->low[k]);
+	return sqrt(sum);
+}
+
+int deform(struct mesh *mesh, const struct deform_plan *plan, const char *path, uint32_t jobs,
+	   struct deform_report *report, struct diagnostics *diagnostics)
+{
+	struct deforming d = { mesh, plan, path, diagnostics, report, jobs, { { { 0 } } } };
+	int rc;
+
+	*report = (struct deform_report){ .least_growth = INFINITY, .most_growth = -INFINITY };
+	rc = mesh_measure(&report->before, mesh, jobs);
+	report->tolerance = plan->tolerance > 0 ? plan->tolerance
+						: TOLERANCE_OF_DIAGONAL * diagonal(&report->before);
+	begin_lines(&d);
+	measure_lines(&d, report->length_before);
+	for (uint32_t i = 0; i < plan->step_count && rc == 0; i++)
+		rc = do_step(&d, &plan->steps[i]);
+	measure_lines(&d, report->length_after);
+	if (rc == 0)
+		rc = mesh_measure(&report->after, mesh, jobs);
+	if (rc < 0)
+		diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc));
+	return rc;
+}

@@ -1,0 +1,437 @@
+/* Leaning and bent pillars made straight, bends without cracks, folds and bad files refused. */
+#include "pipeline/deform/deform.h"
+
+#include <errno.h>
+#include <math.h>
+
+#include "pipeline/deform/bend_split.h"
+#include "pipeline/deform/lattice_step.h"
+#include "tests/check.h"
+#include "tests/pipeline/import/scan_text.h"
+#include "tests/pipeline/shapes.h"
+
+enum { SIDES = 12, RINGS = 9, JOBS = 3 };
+
+/* A closed pillar 4 high; lean(z) says how far its axis is off at z. */
+static struct mesh pillar(float (*lean)(float z))
+{
+	struct mesh mesh;
+	uint32_t foot, head;
+
+	shape_room(&mesh, SIDES * RINGS + 2, 2 * SIDES * RINGS);
+	for (uint32_t r = 0; r < RINGS; r++)
+		for (uint32_t s = 0; s < SIDES; s++) {
+			const float z = 4.0f * (float)r / (RINGS - 1),
+				    turn = 6.2831853f * (float)s / SIDES;
+
+			shape_vertex(&mesh, 0.5f * cosf(turn) + lean(z), 0.5f * sinf(turn), z);
+		}
+	foot = shape_vertex(&mesh, lean(0), 0, 0);
+	head = shape_vertex(&mesh, lean(4), 0, 4);
+	for (uint32_t s = 0; s < SIDES; s++) {
+		const uint32_t next = (s + 1) % SIDES, top = (RINGS - 1) * SIDES;
+
+		shape_triangle(&mesh, foot, next, s);
+		shape_triangle(&mesh, head, top + s, top + next);
+		for (uint32_t r = 0; r + 1 < RINGS; r++) {
+			const uint32_t a = r * SIDES + s, b = r * SIDES + next;
+
+			shape_triangle(&mesh, a, b, a + SIDES);
+			shape_triangle(&mesh, b, b + SIDES, a + SIDES);
+		}
+	}
+	return mesh;
+}
+
+static float leans(float z)
+{
+	return 0.1f * z;
+}
+
+static float bends(float z)
+{
+	return 0.05f * z * z;
+}
+
+/* Deforms a mesh as JSON says. message gets the first diagnostic, without the folder. */
+static int run(struct mesh *mesh, const char *json, struct deform_report *report,
+	       char message[DIAGNOSTIC_BYTES])
+{
+	struct diagnostics diagnostics = { 0 };
+	struct deform_plan plan;
+	char path[256];
+	int rc;
+
+	scan_write(path, "bend.json", json, strlen(json));
+	rc = deform_plan_read(&plan, path, &diagnostics);
+	if (rc == 0)
+		rc = deform(mesh, &plan, path, JOBS, report, &diagnostics);
+	snprintf(message, DIAGNOSTIC_BYTES, "%s",
+		 rc < 0 ? strrchr(diagnostics_cause(&diagnostics, rc), '/') : "");
+	deform_plan_finish(&plan);
+	scan_remove(path);
+	return rc;
+}
+
+static struct deform_report deformed(struct mesh *mesh, const char *json)
+{
+	char message[DIAGNOSTIC_BYTES];
+	struct deform_report report;
+
+	if (run(mesh, json, &report, message) < 0)
+		fail_msg("%s", message);
+	return report;
+}
+
+/* How far the vertices of a pillar's mantle are from a radius of 0.5 about the z axis at most. */
+static double off_axis(const struct mesh *mesh)
+{
+	double worst = 0;
+
+	for (uint32_t v = 0; v < SIDES * RINGS; v++)
+		worst = fmax(worst, fabs(hypot((double)mesh->positions[v][0],
+					       (double)mesh->positions[v][1]) -
+					 0.5));
+	return worst;
+}
+
+static void keeps_every_bit_if_no_point_moves(void **state)
+{
+	struct mesh mesh = pillar(bends), same = pillar(bends);
+	struct deform_report report;
+	(void)state;
+
+	report = deformed(&mesh,
+			  "{\"steps\": [{\"lattice\": [2, 3, 4], \"moves\": ["
+			  "{\"points\": [\"all\", 1, 2], \"level\": 1, \"by\": [0, 0, 0]}]}]}");
+	CHECK(mesh.vertex_count == same.vertex_count && mesh.triangle_count == same.triangle_count);
+	CHECK(memcmp(mesh.positions, same.positions, same.vertex_count * sizeof(*same.positions)) ==
+	      0);
+	CHECK(report.before.volume == report.after.volume && report.least_growth == 1.0 &&
+	      report.most_growth == 1.0);
+	mesh_finish(&mesh);
+	mesh_finish(&same);
+}
+
+/* The lattice's point k lies at z = k, so it goes back by what the pillar leans there. */
+static void makes_a_leaning_pillar_upright_without_new_triangles(void **state)
+{
+	char json[1200] = "{\"steps\": [{\"lattice\": [1, 1, 4], \"moves\": [";
+	struct mesh mesh = pillar(leans);
+	const uint32_t triangles = mesh.triangle_count;
+	struct deform_report report;
+	(void)state;
+
+	for (int k = -1; k <= 5; k++)
+		snprintf(json + strlen(json), sizeof(json) - strlen(json),
+			 "{\"points\": [\"all\", [-1, 2], %d], \"by\": [%g, 0, 0]}%s", k, -0.1 * k,
+			 k < 5 ? "," : "]}]}");
+	CHECK(off_axis(&mesh) > 0.3);
+	report = deformed(&mesh, json);
+	CHECK(off_axis(&mesh) < 1e-6);
+	CHECK(mesh.triangle_count == triangles);
+	CHECK(fabs(report.after.volume - report.before.volume) < 1e-6);
+	CHECK(report.before.border_edges == 0 && report.after.border_edges == 0);
+	CHECK(fabs(report.length_before[2] - 4) < 1e-9);
+	CHECK(fabs(report.length_after[2] - 4 * sqrt(1.01)) <
+	      1e-9); /* the box's middle leans now */
+	mesh_finish(&mesh);
+}
+
+/* Control points of z * z on a grid of distance 1 are k * k - 1/3. */
+static void makes_a_bent_pillar_straight_within_the_tolerance(void **state)
+{
+	char json[1200] =
+		"{\"tolerance\": 0.002, \"steps\": [{\"lattice\": [1, 1, 4], \"moves\": [";
+	struct mesh mesh = pillar(bends);
+	const uint32_t triangles = mesh.triangle_count;
+	struct deform_report report;
+	double worst = 0;
+	(void)state;
+
+	for (int k = -1; k <= 5; k++)
+		snprintf(json + strlen(json), sizeof(json) - strlen(json),
+			 "{\"points\": [\"all\", \"all\", %d], \"by\": [%.9f, 0, 0]}%s", k,
+			 -0.05 * (k * k - 1 / 3.0), k < 5 ? "," : "]}]}");
+	report = deformed(&mesh, json);
+	CHECK(off_axis(&mesh) < 1e-6);
+	/* A ring's distance of 0.5 bends by 0.05 * 0.5^2 / 4 = 0.003, so edges are halved once. */
+	CHECK(mesh.triangle_count > triangles && mesh.triangle_count <= 4 * triangles);
+	CHECK(report.after.border_edges == 0);
+	for (uint32_t v = SIDES * RINGS + 2; v < mesh.vertex_count; v++)
+		worst = fmax(worst, fabs((double)mesh.positions[v][0]) - 0.5);
+	CHECK(worst < 0.0035); /* the middle of a chord that had bent so far before */
+	mesh_finish(&mesh);
+}
+
+/* Twelve stones, whose faces share no vertices: neighbours are known by place only. */
+static struct mesh loose_box(void)
+{
+	struct mesh box, mesh;
+
+	shape_room(&box, 8, 12);
+	shape_add_box(&box, 0, 0, 0, 4);
+	shape_room(&mesh, 36, 12);
+	for (uint32_t t = 0; t < 12; t++) {
+		for (int k = 0; k < 3; k++) {
+			const float *p = box.positions[box.triangles[t][k]];
+
+			shape_vertex(&mesh, p[0], p[1], p[2]);
+		}
+		shape_triangle(&mesh, 3 * t, 3 * t + 1, 3 * t + 2);
+	}
+	mesh_finish(&box);
+	return mesh;
+}
+
+/* Every edge, once divided, goes where space goes within the tolerance, at places that the splitter
+ * did not look at. */
+static void divides_only_where_it_bends_and_without_cracks(void **state)
+{
+	static const double low[3] = { 0, 0, 0 }, high[3] = { 4, 4, 4 };
+	struct deform_move move = {
+		.kind = DEFORM_BY, .first = { 6, 6, 8 }, .last = { 6, 6, 8 }, .place = { 0, 0, 0.6 }
+	};
+	struct deform_step step = { .cells = { 8, 8, 8 }, .moves = &move, .move_count = 1 };
+	struct control_lattice lattice;
+	struct mesh_measure measure;
+	struct mesh mesh = loose_box();
+	struct warp warp;
+	uint32_t far = 0;
+	double worst = 0;
+	(void)state;
+
+	CHECK(lattice_step_make(&lattice, &step, low, high) == 0);
+	warp = lattice_warp(&lattice);
+	CHECK(bend_split(&mesh, &warp, 0.01, 100000, JOBS) == 0);
+	CHECK(mesh.triangle_count > 100 && mesh.triangle_count < 4000);
+	CHECK(mesh_measure(&measure, &mesh, JOBS) == 0);
+	CHECK(measure.border_edges == 0 && fabs(measure.volume - 64) < 1e-9);
+	for (uint32_t t = 0; t < mesh.triangle_count; t++) {
+		double from[3] = { 0 }, flat[3] = { 0 }, to[3];
+		bool is_far = true;
+
+		for (int v = 0; v < 3; v++) {
+			const float *p = mesh.positions[mesh.triangles[t][v]];
+			const double corner[3] = { (double)p[0], (double)p[1], (double)p[2] };
+			const double share = v == 0 ? 0.6 : v == 1 ? 0.3 : 0.1;
+
+			warp.place(warp.data, corner, to, NULL);
+			is_far = is_far && p[2] < 2.5f;
+			for (int k = 0; k < 3; k++) {
+				from[k] += share * corner[k];
+				flat[k] += share * to[k];
+			}
+		}
+		far += is_far;
+		warp.place(warp.data, from, to, NULL);
+		worst = fmax(worst, fabs(to[2] - flat[2]));
+	}
+	print_message("%u triangles, %u of them far from the bend; %.4f off at most\n",
+		      mesh.triangle_count, far, worst);
+	CHECK(worst < 0.02);
+	CHECK(far < 150); /* the move reaches z = 3; below, edges are halved for neighbours only */
+	CHECK(bend_split(&mesh, &warp, 1e-5, 20000, JOBS) == -EFBIG);
+	mesh_finish(&mesh);
+	control_lattice_finish(&lattice);
+}
+
+static void wave(const void *data, const double from[3], double to[3], double jacobian[3][3])
+{
+	(void)data;
+	(void)jacobian;
+	to[0] = from[0];
+	to[1] = from[1];
+	to[2] = from[2] + sin(40 * from[0]);
+}
+
+static double no_bound(const void *data, const double low[3], const double high[3], double *grain)
+{
+	(void)data;
+	(void)low;
+	(void)high;
+	*grain = INFINITY;
+	return INFINITY;
+}
+
+/* At a million, floats are 1/16 apart. */
+static void refuses_to_divide_what_floats_cannot(void **state)
+{
+	const struct warp warp = { wave, no_bound, NULL };
+	struct mesh mesh;
+	(void)state;
+
+	shape_room(&mesh, 3, 1);
+	shape_vertex(&mesh, 1e6f, 0, 0);
+	shape_vertex(&mesh, 1e6f + 1, 0, 0);
+	shape_vertex(&mesh, 1e6f, 1, 0);
+	shape_triangle(&mesh, 0, 1, 2);
+	CHECK(bend_split(&mesh, &warp, 1e-3, 100000, JOBS) == -EDOM);
+	mesh_finish(&mesh);
+}
+
+static void moves_places_the_same_when_it_is_refined(void **state)
+{
+	static const double low[3] = { -1, 2, 0 }, high[3] = { 1, 3, 5 };
+	static const uint32_t cells[3] = { 2, 1, 3 };
+	struct control_lattice coarse, fine;
+	(void)state;
+
+	CHECK(control_lattice_init(&coarse, low, high, cells) == 0);
+	CHECK(control_lattice_init(&fine, low, high, cells) == 0);
+	srand(3);
+	for (int p = 0; p < 5 * 4 * 6; p++) {
+		const int at[3] = { p % 5 - 1, p / 5 % 4 - 1, p / 20 - 1 };
+
+		for (int k = 0; k < 3; k++)
+			control_lattice_move(&coarse, at)[k] = control_lattice_move(&fine, at)[k] =
+				(double)rand() / RAND_MAX;
+	}
+	CHECK(control_lattice_refine(&fine) == 0 && fine.cells[2] == 6);
+	for (int i = 0; i < 500; i++) {
+		double place[3], a[3], b[3], slope_a[3][3], slope_b[3][3], near_a[3];
+
+		for (int k = 0; k < 3; k++) /* some places lie beyond the box */
+			place[k] = low[k] + (1.2 * rand() / RAND_MAX - 0.1) * (high[k] - low[k]);
+		control_lattice_displace(&coarse, place, a, slope_a);
+		control_lattice_displace(&fine, place, b, slope_b);
+		for (int k = 0; k < 3; k++) {
+			const double kept = place[k];
+
+			place[k] += 1e-6;
+			control_lattice_displace(&coarse, place, near_a, NULL);
+			place[k] = kept;
+			for (int c = 0; c < 3; c++) {
+				CHECK(fabs(a[c] - b[c]) < 1e-12);
+				CHECK(fabs(slope_a[c][k] - slope_b[c][k]) < 1e-10);
+				CHECK(fabs((near_a[c] - a[c]) / 1e-6 - slope_a[c][k]) < 1e-4);
+			}
+		}
+	}
+	for (int refined = 0; refined < 5; refined++)
+		CHECK(control_lattice_refine(&fine) == (refined < 3 ? 0 : -EFBIG));
+	control_lattice_finish(&coarse);
+	control_lattice_finish(&fine);
+}
+
+/* Fine moves before coarse ones, or after them; and a turn that is undone. */
+static void takes_levels_in_any_order(void **state)
+{
+	static const char *const orders[2] = {
+		"{\"steps\": [{\"lattice\": [1, 1, 2], \"moves\": ["
+		"{\"points\": [0, 0, 1], \"by\": [0.1, 0, 0.2]},"
+		"{\"points\": [[1, 2], 1, 3], \"level\": 1, \"by\": [0, 0.05, 0]}]}]}",
+		"{\"steps\": [{\"lattice\": [1, 1, 2], \"moves\": ["
+		"{\"points\": [[1, 2], 1, 3], \"level\": 1, \"by\": [0, 0.05, 0]},"
+		"{\"points\": [0, 0, 1], \"by\": [0.1, 0, 0.2]}]}]}",
+	};
+	static const char turned[] =
+		"{\"steps\": ["
+		"{\"lattice\": [1, 1, 1], \"moves\": [{\"points\": [\"all\", \"all\", \"all\"],"
+		"\"turn\": {\"degrees\": 30, \"axis\": [0, 2, 0], \"about\": [1, 0, 0]}}]},"
+		"{\"lattice\": [1, 1, 1], \"moves\": [{\"points\": [\"all\", \"all\", \"all\"],"
+		"\"turn\": {\"degrees\": -30, \"axis\": [0, 2, 0], \"about\": [1, 0, 0]}}]}]}";
+	struct mesh a = pillar(leans), b = pillar(leans), c = pillar(leans);
+	(void)state;
+
+	deformed(&a, orders[0]);
+	deformed(&b, orders[1]);
+	CHECK(a.vertex_count == b.vertex_count &&
+	      memcmp(a.positions, b.positions, a.vertex_count * sizeof(*a.positions)) == 0);
+	mesh_finish(&b);
+	b = pillar(leans);
+	deformed(&c, turned);
+	for (uint32_t v = 0; v < b.vertex_count; v++)
+		CHECK(hypot((double)(c.positions[v][0] - b.positions[v][0]),
+			    (double)(c.positions[v][2] - b.positions[v][2])) < 1e-5);
+	mesh_finish(&a);
+	mesh_finish(&b);
+	mesh_finish(&c);
+}
+
+/* The head goes below the foot. */
+static void refuses_to_fold_over_and_names_the_point(void **state)
+{
+	struct mesh mesh = pillar(leans);
+	char message[DIAGNOSTIC_BYTES];
+	struct deform_report report;
+	int rc;
+	(void)state;
+
+	rc = run(&mesh,
+		 "{\"steps\": [{\"lattice\": [1, 1, 4], \"moves\": [\n"
+		 "{\"points\": [0, 0, 0], \"by\": [0.01, 0, 0]},\n"
+		 "{\"points\": [\"all\", \"all\", 4], \"by\": [0, 0, -3.5]}]}]}",
+		 &report, message);
+	print_message("%s\n", message);
+	CHECK(rc == -EDOM);
+	CHECK(strstr(message, "bend.json:3: the scan would fold over at "));
+	CHECK(strstr(message, "4 of level 0 less"));
+	mesh_finish(&mesh);
+}
+
+static void refuses_what_makes_no_sense(void **state)
+{
+#define STEP(inner)  "{\"steps\": [{" inner "}]}"
+#define MOVES(inner) STEP("\"lattice\": [1, 1, 2], \"moves\": [" inner "]")
+	static const struct {
+		const char *json, *words;
+	} cases[] = {
+		{ "{\"steps\": [", "JSON" },
+		{ "[]", "\"steps\" are missing" },
+		{ "{\"steps\": []}", "1 to 64 steps" },
+		{ "{\"stops\": []}", "\"stops\" is not one of the keys" },
+		{ "{\"tolerance\": 0, \"steps\": [{}]}", "\"tolerance\" must be a length" },
+		{ "{\"steps\": [3]}", "\"steps\" must be a list" },
+		{ STEP("\"lattice\": [1, 1]"), "\"lattice\" must be the cells" },
+		{ STEP("\"lattice\": [1, 0, 1]"), "\"lattice\" must be whole numbers" },
+		{ STEP("\"lattice\": [1, 65, 1]"), "\"lattice\" must be whole numbers" },
+		{ STEP("\"lattice\": [1, 1, 1]"), "\"moves\" must be a list" },
+		{ STEP("\"lattice\": [1, 1, 1], \"box\": {\"low\": [0, 0, 0], \"high\": [1, 0, 1]}"),
+		  "\"box\" must be" },
+		{ MOVES("1"), "\"moves\" must be a list" },
+		{ MOVES("{\"points\": [0, 0, 0]}"), "exactly one" },
+		{ MOVES("{\"points\": [0, 0, 0], \"by\": [0, 0, 0], \"to\": [0, 0, 0]}"),
+		  "exactly one" },
+		{ MOVES("{\"points\": [0, 0, 4], \"by\": [0, 0, 0]}"), "points -1 to 2, 2 and 3" },
+		{ MOVES("{\"points\": [0, 0.5, 1], \"by\": [0, 0, 0]}"), "\"points\" must be" },
+		{ MOVES("{\"points\": [0, [1, 0], 1], \"by\": [0, 0, 0]}"), "\"points\" must be" },
+		{ MOVES("{\"points\": [0, 0, \"some\"], \"by\": [0, 0, 0]}"),
+		  "\"points\" must be" },
+		{ MOVES("{\"points\": [0, 0, 0], \"level\": 6, \"by\": [0, 0, 0]}"), "too high" },
+		{ MOVES("{\"points\": [0, 0, 0], \"level\": 7, \"by\": [0, 0, 0]}"), "0 to 6" },
+		{ MOVES("{\"points\": [0, 0, 0], \"by\": [1e10, 0, 0]}"), "\"by\" must be three" },
+		{ MOVES("{\"points\": [0, 0, 0], \"turn\": {\"degrees\": 1, \"about\": [0, 0, 0], "
+			"\"axis\": [0, 0, 0]}}"),
+		  "\"axis\" has no length" },
+		{ MOVES("{\"points\": [0, 0, 0], \"turn\": {\"degrees\": 1, \"axis\": [0, 0, 1]}}"),
+		  "\"about\" must be" },
+	};
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct mesh mesh = { 0 };
+		char message[DIAGNOSTIC_BYTES];
+		struct deform_report report;
+
+		CHECK(run(&mesh, cases[i].json, &report, message) < 0);
+		if (!strstr(message, cases[i].words) || !strstr(message, "bend.json:"))
+			fail_msg("case %zu: %s", i, message);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(keeps_every_bit_if_no_point_moves),
+		cmocka_unit_test(makes_a_leaning_pillar_upright_without_new_triangles),
+		cmocka_unit_test(makes_a_bent_pillar_straight_within_the_tolerance),
+		cmocka_unit_test(divides_only_where_it_bends_and_without_cracks),
+		cmocka_unit_test(refuses_to_divide_what_floats_cannot),
+		cmocka_unit_test(moves_places_the_same_when_it_is_refined),
+		cmocka_unit_test(takes_levels_in_any_order),
+		cmocka_unit_test(refuses_to_fold_over_and_names_the_point),
+		cmocka_unit_test(refuses_what_makes_no_sense),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
