@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <math.h>
 
-enum { HAS_STREAM = 1, HAS_SCENERY = 2 };
+enum { HAS_STREAM = 1, HAS_SCENERY = 2, HAS_SOLID = 4 };
 
 void lattice_fit(struct lattice *lattice, const float box_min_m[3], const float box_max_m[3])
 {
@@ -39,9 +39,10 @@ void root_page_encode(struct buffer *out, const struct root_page *root)
 	buffer_put(out, root->background, sizeof(root->background));
 	buffer_put_u64(out, root->source_triangles);
 	buffer_put_u64(out, root->published_triangles);
-	if (root->has_stream || root->has_scenery)
+	if (root->has_stream || root->has_scenery || root->has_solid)
 		buffer_put_u8(out, (uint8_t)(root->has_stream * HAS_STREAM +
-					     root->has_scenery * HAS_SCENERY));
+					     root->has_scenery * HAS_SCENERY +
+					     root->has_solid * HAS_SOLID));
 }
 
 static bool read_vector(struct reader *reader, float vector[3])
@@ -105,7 +106,8 @@ int root_page_decode(struct root_page *out, struct bytes payload)
 
 		root.has_stream = (more & HAS_STREAM) != 0;
 		root.has_scenery = (more & HAS_SCENERY) != 0;
-		good = good && more > 0 && more <= (HAS_STREAM | HAS_SCENERY);
+		root.has_solid = (more & HAS_SOLID) != 0;
+		good = good && more > 0 && more <= (HAS_STREAM | HAS_SCENERY | HAS_SOLID);
 	}
 	if (reader.failed || reader_left(&reader) > 0 || !good || !is_sane(&root))
 		return -EBADMSG;

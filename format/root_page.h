@@ -1,7 +1,8 @@
 /* Payload of PAGE_ROOT: what a kiosk must know about a release before it fetches anything else.
  * Children, in this order: the hierarchy page, the samples page, the info page, the labels page if
- * any part has a region, the stream page if has_stream is set, and the scenery
- * (format/scenery_code.h, no page) if has_scenery is set. */
+ * any part has a region, the stream page if has_stream is set, the scenery (format/scenery_code.h,
+ * no page) if has_scenery is set, and the octree of where an eye may be (format/solid.h, no page)
+ * if has_solid is set. */
 #ifndef GOPURA_FORMAT_ROOT_PAGE_H
 #define GOPURA_FORMAT_ROOT_PAGE_H
 
@@ -13,7 +14,7 @@ enum {
 	ROOT_CHILD_INFO,
 	ROOT_CHILD_COUNT, /* the children that every root page has */
 	ROOT_CHILD_LABELS = ROOT_CHILD_COUNT,
-	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 3 /* with labels, stream and scenery */
+	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 4 /* with labels, stream, scenery and octree */
 };
 
 enum {
@@ -51,17 +52,18 @@ struct root_page {
 	uint8_t background[3];     /* sRGB behind the model */
 	uint64_t source_triangles; /* of the original scan */
 	uint64_t published_triangles;
-	/* 1: there is a stream page (format/stream_page.h), or scenery. On the wire they are bits 0
-	 * and 1 of one byte, which releases without either do not have. A program from before there
-	 * was scenery refuses a release with it. */
-	uint8_t has_stream, has_scenery;
+	/* 1: there is a stream page (format/stream_page.h), scenery, or an octree of where an eye
+	 * may be. On the wire they are bits 0 to 2 of one byte, which releases without any do not
+	 * have. A program from before there was scenery, or the octree, refuses a release with it.
+	 */
+	uint8_t has_stream, has_scenery, has_solid;
 };
 
 /* Returns the number of the first child after those for hierarchy, samples, information and labels;
  * child_count is that of the page. */
 static inline uint32_t root_page_plain(const struct root_page *root, uint32_t child_count)
 {
-	const uint32_t more = (uint32_t)root->has_stream + root->has_scenery;
+	const uint32_t more = (uint32_t)root->has_stream + root->has_scenery + root->has_solid;
 
 	return child_count > more ? child_count - more : 0;
 }

@@ -64,11 +64,12 @@ static void print_objects(const struct verify_report *report)
 	print_sum("tiles", &report->tiles);
 	print_sum("labels", &report->labels);
 	print_sum("scenery", &report->scenery);
+	print_sum("space for the eye", &report->solid);
 	print_sum("information", &report->database);
 	print_sum("pictures, sound", &report->files);
 	all = pages + report->groups.bytes + report->tiles.bytes + report->database.bytes +
 	      report->files.bytes + report->labels.bytes + report->stream_blocks.bytes +
-	      report->scenery.bytes;
+	      report->scenery.bytes + report->solid.bytes;
 	printf("  %-20s %9s  %14" PRIu64 " bytes\n", "all", "", all);
 	printf("  pages are %.2f %% of that, the locator %u bytes, in %u packs\n",
 	       100.0 * (double)pages / (double)all, report->locator_bytes, report->pack_count);

@@ -5,6 +5,7 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@
 #include "format/root_page.h"
 #include "format/samples.h"
 #include "format/scenery_code.h"
+#include "format/solid.h"
 #include "format/stream.h"
 #include "format/stream_page.h"
 #include "format/tile.h"
@@ -254,6 +256,37 @@ static int print_scenery(FILE *to, struct bytes bytes)
 	return 0;
 }
 
+static int print_solid(FILE *to, struct bytes bytes)
+{
+	struct solid solid;
+	double free_m3 = 0;
+	int rc = solid_decode(&solid, bytes);
+
+	if (rc < 0)
+		return rc;
+	for (uint32_t i = 0, level = 0, end = 1; i < solid.node_count; i++) {
+		double side_m;
+
+		if (i == end) {
+			end = solid.nodes[i].first;
+			level++;
+		}
+		side_m = ldexp((double)solid.cell_m, (int)(solid.depth - level) - 1);
+		for (uint32_t child = 0; child < SOLID_CHILDREN; child++)
+			if (solid_child_state(&solid.nodes[i], child) == SOLID_FREE)
+				free_m3 += side_m * side_m * side_m;
+	}
+	fprintf(to, "space for the eye, %zu bytes: %u nodes in %u levels\n", bytes.size,
+		solid.node_count, solid.depth);
+	fprintf(to, "  cells              %.3f m, at least %.3f m from stone\n",
+		(double)solid.cell_m, (double)solid.room_m);
+	fprintf(to, "  free               %.1f of %.1f m3\n", free_m3,
+		pow(ldexp((double)solid.cell_m, (int)solid.depth), 3));
+	print_vector(to, "from", solid.low_m);
+	solid_finish(&solid);
+	return 0;
+}
+
 static int print_locator(FILE *to, struct bytes bytes)
 {
 	struct locator locator;
@@ -365,10 +398,15 @@ int inspect_bytes(FILE *to, struct bytes bytes)
 		const char *magic;
 		int (*print)(FILE *, struct bytes);
 	} forms[] = {
-		{ "GPag", print_page },       { "GPpg", print_patch_group },
-		{ "GPlb", print_labels },     { "GPsy", print_scenery },
-		{ "GLoc", print_locator },    { "SQLite format 3", print_info },
-		{ "{", print_signed },        { "\xff\xd8", print_picture },
+		{ "GPag", print_page },
+		{ "GPpg", print_patch_group },
+		{ "GPlb", print_labels },
+		{ "GPsy", print_scenery },
+		{ "GPso", print_solid },
+		{ "GLoc", print_locator },
+		{ "SQLite format 3", print_info },
+		{ "{", print_signed },
+		{ "\xff\xd8", print_picture },
 		{ "\x89PNG", print_picture },
 	};
 	int rc = -EBADMSG;

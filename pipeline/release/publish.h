@@ -28,7 +28,7 @@ struct publish_report {
 };
 
 /* Publishes a release. children: the pages of hierarchy, samples, information and, if there are
- * any, labels and, if root->has_stream is set, the streaming mesh; objects holds them and
+ * any, labels, and what root->has_solid and root->has_stream announce; objects holds them and
  * everything below them. If nothing changed and there is no new comment, only the timestamp is
  * renewed. Errors are logged. */
 must_check int publish_parts(struct publish_report *report, const struct publish_target *target,

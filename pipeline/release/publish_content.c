@@ -17,6 +17,7 @@
 #include "pipeline/release/publish_labels.h"
 #include "pipeline/release/publish_samples.h"
 #include "pipeline/release/publish_scenery.h"
+#include "pipeline/release/publish_solid.h"
 #include "pipeline/release/publish_stream.h"
 #include "pipeline/release/start_view.h"
 
@@ -165,6 +166,32 @@ static int add_samples(struct object_store *objects, struct samples_store **stor
 	return rc < 0 ? rc : publish_samples(objects, *store, out);
 }
 
+/* Adds what a release may lack: the streaming mesh, scenery, the octree of where an eye may be. */
+static int add_extras(struct object_store *objects, struct root_page *root, struct sources *sources,
+		      const struct info_built *built, struct page_child *children,
+		      uint32_t *child_count)
+{
+	struct info *info = NULL;
+	int rc = publish_stream(objects, &root->lattice, &children[ROOT_CHILD_HIERARCHY],
+				&children[*child_count]);
+
+	root->has_stream = rc == 1;
+	*child_count += root->has_stream;
+	if (rc >= 0)
+		rc = publish_scenery(objects, sources, &children[*child_count]);
+	root->has_scenery = rc == 1;
+	*child_count += root->has_scenery;
+	if (rc >= 0)
+		rc = info_open(&info, buffer_bytes(&built->database));
+	if (rc == 0)
+		rc = publish_solid(objects, root, &children[ROOT_CHILD_HIERARCHY], info,
+				   &children[*child_count]);
+	info_close(info);
+	root->has_solid = rc == 1;
+	*child_count += root->has_solid;
+	return rc;
+}
+
 static int publish_objects(struct publish_content_report *report,
 			   const struct publish_target *target, struct object_store *objects,
 			   struct sources *sources)
@@ -191,14 +218,7 @@ static int publish_objects(struct publish_content_report *report,
 	if (rc > 0)
 		child_count = ROOT_CHILD_LABELS + 1;
 	if (rc >= 0)
-		rc = publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
-				    &children[child_count]);
-	root.has_stream = rc == 1;
-	child_count += root.has_stream;
-	if (rc >= 0)
-		rc = publish_scenery(objects, sources, &children[child_count]);
-	root.has_scenery = rc == 1;
-	child_count += root.has_scenery;
+		rc = add_extras(objects, &root, sources, info, children, &child_count);
 	if (rc >= 0 && content->budget_bytes > 0)
 		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
 					 content->quality_rule == CONTENT_QUALITY_GAIN

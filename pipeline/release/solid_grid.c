@@ -19,22 +19,20 @@ struct solid_grid {
 	int32_t count[3]; /* cells along each axis */
 	int32_t ground;   /* cells below this one are lower than an eye may be */
 	uint32_t depth;
-	uint64_t *near;      /* owned; a bit for each cell: a triangle is near */
-	uint64_t *reached;   /* owned; the flood came here */
-	int32_t (*stack)[3]; /* owned; cells where the flood goes on */
-	uint32_t stack_count, stack_room;
+	size_t row_words;  /* of each row along x; its bits past the last cell are near */
+	uint64_t *near;    /* owned; a bit for each cell: a triangle is near */
+	uint64_t *reached; /* owned; the flood came here */
 	uint8_t *levels[SOLID_DEPTH_MAX + 1]; /* owned; states of cells of 2^level; [0] is unused */
 };
 
 static size_t words(const struct solid_grid *grid)
 {
-	return ((size_t)grid->count[0] * (size_t)grid->count[1] * (size_t)grid->count[2] + 63) / 64;
+	return grid->row_words * (size_t)grid->count[1] * (size_t)grid->count[2];
 }
 
 static size_t index_of(const struct solid_grid *grid, int32_t x, int32_t y, int32_t z)
 {
-	return ((size_t)z * (size_t)grid->count[1] + (size_t)y) * (size_t)grid->count[0] +
-	       (size_t)x;
+	return 64 * grid->row_words * ((size_t)z * (size_t)grid->count[1] + (size_t)y) + (size_t)x;
 }
 
 static bool has(const uint64_t *bits, size_t index)
@@ -72,6 +70,7 @@ int solid_grid_create(struct solid_grid **out, const struct solid_grid_options *
 		cells *= along;
 		most = grid->count[axis] > most ? grid->count[axis] : most;
 	}
+	grid->row_words = ((size_t)grid->count[0] + 63) / 64;
 	grid->depth = 32 - (uint32_t)__builtin_clz((uint32_t)most - 1);
 	/* An eye stays above the lowest point, by its room. */
 	grid->ground = (int32_t)((around_m + options->room_m) / options->cell_m);
@@ -83,6 +82,10 @@ int solid_grid_create(struct solid_grid **out, const struct solid_grid_options *
 		solid_grid_destroy(grid);
 		return cells <= SOLID_GRID_CELLS_MAX ? -ENOMEM : -EFBIG;
 	}
+	for (int32_t z = 0; z < grid->count[2]; z++)
+		for (int32_t y = 0; y < grid->count[1]; y++)
+			for (size_t x = (size_t)grid->count[0]; x < 64 * grid->row_words; x++)
+				set(grid->near, index_of(grid, 0, y, z) + x);
 	*out = grid;
 	return 0;
 }
@@ -93,7 +96,6 @@ void solid_grid_destroy(struct solid_grid *grid)
 		return;
 	free(grid->near);
 	free(grid->reached);
-	free(grid->stack);
 	for (uint32_t level = 0; level <= SOLID_DEPTH_MAX; level++)
 		free(grid->levels[level]);
 	free(grid);
@@ -105,39 +107,30 @@ struct triangle {
 	float corner[3][3], edge[3][3], normal[3];
 };
 
-/* Returns whether the projections of a box around 0 and of a triangle on an axis are apart. */
-static bool is_apart(float a[3][3], const float axis[3], const float half[3])
-{
-	const float p = vec_dot(a[0], axis), q = vec_dot(a[1], axis), r = vec_dot(a[2], axis);
-	const float reach =
-		half[0] * fabsf(axis[0]) + half[1] * fabsf(axis[1]) + half[2] * fabsf(axis[2]);
-
-	return vec_least(p, vec_least(q, r)) > reach || vec_most(p, vec_most(q, r)) < -reach;
-}
-
-/* Separating axes: the triangle's plane, the box's sides, and the edges of both crossed. */
+/* Separating axes: the triangle's plane, and its edges crossed with the box's. The sides of the box
+ * are not tried, because the ranges of cells are those that the triangle's own box reaches. */
 static bool meets(const struct triangle *t, const float centre[3], const float half[3])
 {
-	float corner[3][3], away;
+	float corner[3][3];
 
 	vec_sub(corner[0], t->corner[0], centre);
-	away = fabsf(vec_dot(t->normal, corner[0]));
-	if (away > half[0] * fabsf(t->normal[0]) + half[1] * fabsf(t->normal[1]) +
-			   half[2] * fabsf(t->normal[2]))
+	if (fabsf(vec_dot(t->normal, corner[0])) > half[0] * fabsf(t->normal[0]) +
+							   half[1] * fabsf(t->normal[1]) +
+							   half[2] * fabsf(t->normal[2]))
 		return false;
 	vec_sub(corner[1], t->corner[1], centre);
 	vec_sub(corner[2], t->corner[2], centre);
-	for (int axis = 0; axis < 3; axis++) {
-		float unit[3] = { 0 };
+	for (int e = 0; e < 3; e++) {
+		/* Both ends of an edge are at one place along what is perpendicular to it. */
+		const float *on = corner[e], *off = corner[(e + 2) % 3];
 
-		unit[axis] = 1;
-		if (is_apart(corner, unit, half))
-			return false;
-		for (int e = 0; e < 3; e++) {
-			float cross[3];
+		for (int x = 0; x < 3; x++) {
+			const int y = (x + 1) % 3, z = (x + 2) % 3;
+			const float u = t->edge[e][z], v = -t->edge[e][y];
+			const float p = u * on[y] + v * on[z], q = u * off[y] + v * off[z];
+			const float reach = half[y] * fabsf(u) + half[z] * fabsf(v);
 
-			vec_cross(cross, unit, t->edge[e]);
-			if (is_apart(corner, cross, half))
+			if (vec_least(p, q) > reach || vec_most(p, q) < -reach)
 				return false;
 		}
 	}
@@ -228,71 +221,83 @@ void solid_grid_add(struct solid_grid *grid, const float corners_m[3][3])
 
 static bool is_open(const struct solid_grid *grid, const int32_t at[3])
 {
-	size_t index;
-
 	if (at[2] < grid->ground)
 		return false;
 	for (int axis = 0; axis < 3; axis++)
 		if (at[axis] < 0 || at[axis] >= grid->count[axis])
 			return false;
-	index = index_of(grid, at[0], at[1], at[2]);
-	return !has(grid->near, index) && !has(grid->reached, index);
+	return !has(grid->near, index_of(grid, at[0], at[1], at[2]));
 }
 
-static int push(struct solid_grid *grid, const int32_t at[3])
+/* Spreads bits to the next ones as far as `open` is set, upwards and downwards: each step doubles
+ * how far. */
+static uint64_t spread_up(uint64_t bits, uint64_t open)
 {
-	if (ARRAY_RESERVE(grid->stack, grid->stack_room, grid->stack_count + 1, UINT32_MAX) < 0)
-		return -ENOMEM;
-	for (int axis = 0; axis < 3; axis++)
-		grid->stack[grid->stack_count][axis] = at[axis];
-	grid->stack_count++;
-	return 0;
-}
-
-/* Pushes the first cell of each open run of the row beside a run from first to end along x. */
-static int push_runs(struct solid_grid *grid, int32_t first, int32_t end, int32_t y, int32_t z)
-{
-	bool was_open = false;
-	int rc = 0;
-
-	for (int32_t x = first; rc == 0 && x < end; x++) {
-		const int32_t at[3] = { x, y, z };
-		const bool open = is_open(grid, at);
-
-		if (open && !was_open)
-			rc = push(grid, at);
-		was_open = open;
+	for (int step = 1; step < 64; step *= 2) {
+		bits |= open & bits << step;
+		open &= open << step;
 	}
-	return rc;
+	return bits;
 }
 
-/* Reaches all that can be reached from a cell, row by row. */
-static int flood(struct solid_grid *grid, const int32_t from[3])
+static uint64_t spread_down(uint64_t bits, uint64_t open)
 {
-	int rc = is_open(grid, from) ? push(grid, from) : 0;
-
-	while (rc == 0 && grid->stack_count > 0) {
-		const int32_t *top = grid->stack[--grid->stack_count];
-		int32_t at[3] = { top[0], top[1], top[2] }, first, end;
-
-		if (!is_open(grid, at))
-			continue;
-		for (first = at[0]; at[0] >= 0 && is_open(grid, at); at[0]--)
-			first = at[0];
-		for (at[0] = end = first; is_open(grid, at); at[0]++) {
-			set(grid->reached, index_of(grid, at[0], at[1], at[2]));
-			end = at[0] + 1;
-		}
-		for (int side = -1; rc == 0 && side <= 1; side += 2) {
-			rc = push_runs(grid, first, end, at[1] + side, at[2]);
-			if (rc == 0)
-				rc = push_runs(grid, first, end, at[1], at[2] + side);
-		}
+	for (int step = 1; step < 64; step *= 2) {
+		bits |= open & bits >> step;
+		open &= open >> step;
 	}
-	return rc;
+	return bits;
 }
 
-int solid_grid_open(struct solid_grid *grid, const float eye_m[3])
+/* Reaches the cells of a row that are open and beside a cell that was reached, in the row or in the
+ * four around it. Returns whether there were any. */
+static bool reach_row(struct solid_grid *grid, int32_t y, int32_t z)
+{
+	const size_t row = index_of(grid, 0, y, z) / 64, line = grid->row_words;
+	const size_t layer = line * (size_t)grid->count[1];
+	uint64_t *reached = grid->reached + row, carry = 0, changed = 0;
+	const uint64_t *near = grid->near + row;
+
+	for (size_t w = 0; w < line; w++) {
+		uint64_t bits = reached[w];
+
+		bits |= y > 0 ? reached[w - line] : 0;
+		bits |= y + 1 < grid->count[1] ? reached[w + line] : 0;
+		bits |= z > grid->ground ? reached[w - layer] : 0;
+		bits |= z + 1 < grid->count[2] ? reached[w + layer] : 0;
+		bits = spread_up((bits | carry) & ~near[w], ~near[w]);
+		carry = bits >> 63;
+		changed |= bits ^ reached[w];
+		reached[w] = bits;
+	}
+	carry = 0;
+	for (size_t w = line; w-- > 0;) {
+		const uint64_t bits = spread_down(reached[w] | (carry << 63 & ~near[w]), ~near[w]);
+
+		carry = bits & 1;
+		changed |= bits ^ reached[w];
+		reached[w] = bits;
+	}
+	return changed != 0;
+}
+
+/* Reaches all that can be reached from what was, in sweeps over all rows, forth and back. */
+static void flood(struct solid_grid *grid)
+{
+	bool changed = true;
+
+	while (changed) {
+		changed = false;
+		for (int32_t z = grid->ground; z < grid->count[2]; z++)
+			for (int32_t y = 0; y < grid->count[1]; y++)
+				changed |= reach_row(grid, y, z);
+		for (int32_t z = grid->count[2]; changed && z-- > grid->ground;)
+			for (int32_t y = grid->count[1]; y-- > 0;)
+				reach_row(grid, y, z);
+	}
+}
+
+void solid_grid_open(struct solid_grid *grid, const float eye_m[3])
 {
 	/* How far from an eye its free cell may be: as far as its own room. */
 	const int32_t most = (int32_t)ceilf(grid->options.room_m / grid->options.cell_m) + 1;
@@ -304,7 +309,7 @@ int solid_grid_open(struct solid_grid *grid, const float eye_m[3])
 		if (eye_m[axis] < grid->low_m[axis] ||
 		    eye_m[axis] >=
 			    grid->low_m[axis] + grid->options.cell_m * (float)grid->count[axis])
-			return 0; /* outside of the grid all is free */
+			return; /* outside of the grid all is free */
 	}
 	for (int32_t dz = -most; dz <= most; dz++)
 		for (int32_t dy = -most; dy <= most; dy++)
@@ -319,7 +324,8 @@ int solid_grid_open(struct solid_grid *grid, const float eye_m[3])
 				for (int axis = 0; axis < 3; axis++)
 					best[axis] = at[axis];
 			}
-	return flood(grid, best);
+	if (nearest < INT32_MAX)
+		set(grid->reached, index_of(grid, best[0], best[1], best[2]));
 }
 
 /* ---- the tree */
@@ -357,6 +363,34 @@ static uint32_t states_of(const struct solid_grid *grid, uint32_t level, const i
 	return states;
 }
 
+/* Makes a row of level 1 from the four rows of cells below it, 32 pairs of cells at a time. */
+static void make_first_row(const struct solid_grid *grid, int32_t y, int32_t z, uint8_t *out)
+{
+	const int32_t count = count_at(grid, 1, 0);
+
+	for (int32_t x = 0; x < count; x += 32) {
+		/* Cells outside of the grid are free, as if they were reached. */
+		const int32_t left = grid->count[0] - 2 * x;
+		const uint64_t outside = left < 64 ? UINT64_MAX << left : 0;
+		uint64_t all = UINT64_MAX, any = outside;
+
+		for (int row = 0; row < 4; row++) {
+			const int32_t below_y = 2 * y + row % 2, below_z = 2 * z + row / 2;
+			uint64_t bits = UINT64_MAX;
+
+			if (below_y < grid->count[1] && below_z < grid->count[2])
+				bits = grid->reached[index_of(grid, 2 * x, below_y, below_z) / 64] |
+				       outside;
+			all &= bits;
+			any |= bits;
+		}
+		for (int32_t i = 0; i < 32 && x + i < count; i++)
+			*out++ = (all >> 2 * i & 3) == 3   ? SOLID_FREE
+				 : (any >> 2 * i & 3) == 0 ? SOLID_FULL
+							   : SOLID_DIVIDED;
+	}
+}
+
 static int make_level(struct solid_grid *grid, uint32_t level)
 {
 	const int32_t nx = count_at(grid, level, 0), ny = count_at(grid, level, 1);
@@ -367,7 +401,12 @@ static int make_level(struct solid_grid *grid, uint32_t level)
 	if (!state)
 		return -ENOMEM;
 	for (int32_t z = 0; z < nz; z++)
-		for (int32_t y = 0; y < ny; y++)
+		for (int32_t y = 0; y < ny; y++) {
+			if (level == 1) {
+				make_first_row(grid, y, z, state);
+				state += nx;
+				continue;
+			}
 			for (int32_t x = 0; x < nx; x++) {
 				const int32_t at[3] = { x, y, z };
 				const uint32_t states = states_of(grid, level, at);
@@ -376,6 +415,7 @@ static int make_level(struct solid_grid *grid, uint32_t level)
 					   : states == 0x5555 ? SOLID_FULL
 							      : SOLID_DIVIDED;
 			}
+		}
 	return 0;
 }
 
@@ -427,11 +467,12 @@ static int make_nodes(const struct solid_grid *grid, struct nodes *nodes)
 
 int solid_grid_tree(struct solid_grid *grid, struct solid *out)
 {
-	const int32_t outside[3] = { 0, 0, grid->count[2] - 1 };
 	struct nodes nodes = { 0 };
-	int rc = flood(grid, outside);
+	int rc = 0;
 
 	*out = (struct solid){ 0 };
+	set(grid->reached, index_of(grid, 0, 0, grid->count[2] - 1));
+	flood(grid);
 	for (uint32_t level = 1; rc == 0 && level < grid->depth; level++)
 		rc = make_level(grid, level);
 	if (rc == 0)

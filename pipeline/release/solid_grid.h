@@ -25,7 +25,7 @@ void solid_grid_destroy(struct solid_grid *grid); /* NULL is fine */
 void solid_grid_add(struct solid_grid *grid, const float corners_m[3][3]);
 /* Marks a place where an eye is known to be, such as the first view: the free cell nearest to it is
  * not filled, nor what can be reached from there. Call it after the last triangle. */
-must_check int solid_grid_open(struct solid_grid *grid, const float eye_m[3]);
+void solid_grid_open(struct solid_grid *grid, const float eye_m[3]);
 /* Fills what cannot be reached and makes the tree; nothing may be added afterwards. The caller ends
  * *out with solid_finish(). Returns -EFBIG if it had more than SOLID_NODES_MAX nodes, or -ENOMEM.
  */

@@ -7,6 +7,7 @@
 #include "format/article.h"
 #include "format/label.h"
 #include "format/scenery_code.h"
+#include "format/solid.h"
 #include "format/stream.h"
 #include "format/stream_page.h"
 #include "pipeline/release/verify_pages.h"
@@ -52,6 +53,22 @@ static int check_scenery(struct verify_walk *walk, const struct verify_page *pag
 	return rc == -EBADMSG ? blame_child(walk, page, child, "scenery", "does not decode") : rc;
 }
 
+static int check_solid(struct verify_walk *walk, const struct verify_page *page, uint32_t child)
+{
+	struct bytes object;
+	struct solid solid;
+	int rc = verify_child(walk, page, child, &object);
+
+	if (rc < 0)
+		return rc;
+	count(&walk->report->solid, object);
+	rc = solid_decode(&solid, object);
+	solid_finish(&solid);
+	return rc == -EBADMSG ? blame_child(walk, page, child, "octree of where an eye may be",
+					    "does not decode")
+			      : rc;
+}
+
 int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 {
 	static const enum page_kind kinds[] = {
@@ -70,11 +87,13 @@ int verify_root_page(struct verify_walk *walk, const struct verify_page *page)
 	if (plain < ROOT_CHILD_COUNT || plain > ROOT_CHILD_LABELS + 1)
 		return blame_page(walk, page,
 				  "a root page has three children, and one each for labels, the "
-				  "streaming mesh and scenery");
+				  "streaming mesh, scenery and the space for the eye");
 	for (uint32_t i = 0; rc == 0 && i < plain + root->has_stream; i++)
 		rc = verify_later(walk, page, i, i < plain ? kinds[i] : PAGE_STREAM);
 	if (rc == 0 && root->has_scenery)
-		rc = check_scenery(walk, page, page->page.child_count - 1);
+		rc = check_scenery(walk, page, plain + root->has_stream);
+	if (rc == 0 && root->has_solid)
+		rc = check_solid(walk, page, page->page.child_count - 1);
 	return rc;
 }
 

@@ -19,8 +19,8 @@ struct verify_report {
 	uint32_t locator_bytes, pack_count;
 	uint64_t read_bytes; /* of all files; packs may hold blocks of other releases too */
 	struct verify_sum pages[PAGE_KINDS]; /* indexed by enum page_kind */
-	struct verify_sum groups, stream_blocks, tiles, files, database, labels,
-		scenery;              /* files: pictures and spoken texts */
+	struct verify_sum groups, stream_blocks, tiles, files, database, labels, scenery,
+		solid;                /* files: pictures and spoken texts */
 	uint64_t hierarchy_triangles; /* in all published patches */
 	uint32_t patches;
 	uint32_t points, faces; /* which show something */

@@ -86,7 +86,13 @@ static void says_whether_there_is_a_stream_or_scenery(void **state)
 	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
 	CHECK(back.has_stream == 0 && back.has_scenery == 1);
 	CHECK(root_page_plain(&back, 5) == 4);
-	buffer.data[buffer.size - 1] = 4;
+	buffer.data[buffer.size - 1] = 7; /* an octree too */
+	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
+	CHECK(back.has_stream == 1 && back.has_scenery == 1 && back.has_solid == 1);
+	CHECK(root_page_plain(&back, 7) == 4);
+	buffer.data[buffer.size - 1] = 8;
+	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
+	buffer.data[buffer.size - 1] = 0;
 	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
 	buffer.data[buffer.size - 1] = 1;
 	buffer_put_u8(&buffer, 1);

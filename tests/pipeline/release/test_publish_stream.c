@@ -1,3 +1,4 @@
+/* What a release may have beside its patches: the streaming mesh, and where an eye may be. */
 #include "pipeline/release/publish_stream.h"
 
 #include <errno.h>
@@ -6,6 +7,10 @@
 #include <string.h>
 
 #include "format/stream_page.h"
+#include "geometry/solid_space.h"
+#include "geometry/tour_path.h"
+#include "geometry/vec.h"
+#include "pipeline/release/publish_solid.h"
 #include "pipeline/release/verify.h"
 #include "tests/pipeline/release/tiny_fixture.h"
 
@@ -138,7 +143,93 @@ static void the_base_and_the_blocks_are_the_cut(void **state)
 	object_store_destroy(objects);
 }
 
+/* ---- where an eye may be */
+
+static float height_m(const struct root_page *root, const float point_m[3])
+{
+	const double x = ((double)point_m[0] - root->lattice.origin_m[0]) / root->lattice.step_m;
+	const double y = ((double)point_m[1] - root->lattice.origin_m[1]) / root->lattice.step_m;
+
+	return (float)(root->lattice.origin_m[2] +
+		       root->lattice.step_m * (3000 + 2000 * sin(x / 4000) * cos(y / 5000)));
+}
+
+/* The root page of the hills alone. */
+static struct root_page hills(void)
+{
+	const int32_t low[3] = { 0, 0, 1000 }, high[3] = { 40000, 40000, 5000 };
+	struct root_page root = tiny.root;
+	double low_m[3], high_m[3];
+
+	lattice_metres(low_m, &root.lattice, low);
+	lattice_metres(high_m, &root.lattice, high);
+	for (int axis = 0; axis < 3; axis++) {
+		root.box_min_m[axis] = (float)low_m[axis];
+		root.box_max_m[axis] = (float)high_m[axis];
+		root.start_eye_m[axis] = (float)high_m[axis];
+	}
+	return root;
+}
+
+static void an_eye_stays_above_the_hills(void **state)
+{
+	const struct root_page root = hills();
+	const float room_m = tour_path_clearance_m(vec_distance(root.box_min_m, root.box_max_m));
+	struct object_store *objects;
+	struct page_child hierarchy, child;
+	struct buffer object;
+	struct solid solid;
+
+	(void)state;
+	CHECK(object_store_create(&objects) == 0);
+	add_hierarchy(objects, &hierarchy);
+	CHECK(publish_solid(objects, &root, &hierarchy, NULL, &child) == 1);
+	CHECK(!child.is_page);
+	CHECK(child.size <= SOLID_BYTES_MOST);
+	buffer_init(&object, OBJECT_BYTES_MAX);
+	CHECK(object_store_read(objects, child.hash, &object) == 0);
+	CHECK(solid_decode(&solid, buffer_bytes(&object)) == 0);
+	CHECK(solid.room_m == room_m && solid.cell_m >= room_m / 2);
+	for (int i = 0; i < 50 * 50; i++) {
+		float point[3] = { 0 };
+		float ground;
+
+		vec_mix(point, root.box_min_m, root.box_max_m, (float)(i % 50 + 1) / 52);
+		point[1] = root.box_min_m[1] +
+			   (root.box_max_m[1] - root.box_min_m[1]) * (float)(i / 50 + 1) / 52;
+		ground = height_m(&root, point);
+		point[2] = ground + 0.7f * room_m;
+		CHECK(!solid_is_free(&solid, point));
+		point[2] = ground + 5 * room_m;
+		CHECK(solid_is_free(&solid, point));
+	}
+	solid_finish(&solid);
+	buffer_finish(&object);
+	object_store_destroy(objects);
+}
+
 /* ---- in a release */
+
+static bool spoil_solid;
+
+static void add_solid(struct object_store *objects, const struct root_page *root,
+		      const struct page_child *hierarchy, struct page_child *out)
+{
+	static uint8_t copy[1 << 16]; /* it is made once, and one byte longer is damaged */
+	static size_t size;
+	struct buffer object;
+
+	if (size == 0) {
+		CHECK(publish_solid(objects, root, hierarchy, NULL, out) == 1);
+		buffer_init(&object, OBJECT_BYTES_MAX);
+		CHECK(object_store_read(objects, out->hash, &object) == 0);
+		size = object.size;
+		CHECK(size < sizeof(copy));
+		memcpy(copy, object.data, size);
+		buffer_finish(&object);
+	}
+	CHECK(object_store_add(objects, (struct bytes){ copy, size + spoil_solid }, out) == 0);
+}
 
 /* Publishes with a stream page that `change` (may be NULL) has altered, and verifies. */
 static int publish_and_verify(void (*change)(struct object_store *, struct page *))
@@ -153,7 +244,7 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 	const struct release_reader_options options = { .place = tiny.release };
 	struct verify_options verify = { 0 };
 	struct page_child children[ROOT_CHILDREN_MAX];
-	struct root_page root = tiny.root;
+	struct root_page root = hills();
 	struct publish_report report;
 	struct info_built built;
 	struct object_store *objects;
@@ -161,7 +252,7 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 
 	root.published_triangles = TILES + TILES / 4;
 	root.source_triangles = 10 * TILES;
-	root.has_stream = 1;
+	root.has_stream = root.has_solid = 1;
 	CHECK(object_store_create(&objects) == 0);
 	add_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
 	CHECK(tiny_publish_samples(&tiny, objects, &children[ROOT_CHILD_SAMPLES]) == 0);
@@ -169,6 +260,7 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 	CHECK(publish_info(objects, &built, tiny.content, &children[ROOT_CHILD_INFO]) == 0);
 	CHECK(publish_stream(objects, &root.lattice, &children[ROOT_CHILD_HIERARCHY],
 			     &children[ROOT_CHILD_COUNT]) == 1);
+	add_solid(objects, &root, &children[ROOT_CHILD_HIERARCHY], &children[ROOT_CHILD_COUNT + 1]);
 	if (change) {
 		struct buffer bytes;
 		struct page page;
@@ -179,7 +271,7 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 		page_finish(&page);
 		buffer_finish(&bytes);
 	}
-	CHECK(publish_parts(&report, &target, objects, &root, children, ROOT_CHILD_COUNT + 1) == 0);
+	CHECK(publish_parts(&report, &target, objects, &root, children, ROOT_CHILD_COUNT + 2) == 0);
 	info_built_finish(&built);
 	object_store_destroy(objects);
 	CHECK(release_reader_create(&verify.reader, &options) == 0);
@@ -188,12 +280,13 @@ static int publish_and_verify(void (*change)(struct object_store *, struct page 
 	return rc;
 }
 
-static void a_release_with_a_stream_is_whole(void **state)
+static void a_release_with_both_is_whole(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify(NULL) == 0);
 	CHECK(verified.pages[PAGE_STREAM].count == 1 && verified.stream_blocks.count > 0);
-	CHECK(verified.root.has_stream == 1);
+	CHECK(verified.root.has_stream == 1 && verified.root.has_solid == 1);
+	CHECK(verified.solid.count == 1);
 }
 
 static void drop_last(struct object_store *objects, struct page *page)
@@ -237,7 +330,7 @@ static void name_more_groups(struct object_store *objects, struct page *page)
 	page->payload.data = copy;
 }
 
-static void faults_of_a_stream_are_found(void **state)
+static void faults_of_both_are_found(void **state)
 {
 	(void)state;
 	CHECK(publish_and_verify(drop_last) == -EBADMSG);
@@ -248,6 +341,10 @@ static void faults_of_a_stream_are_found(void **state)
 	CHECK(strstr(verified.diagnostics.first.text, "no whole base"));
 	CHECK(publish_and_verify(name_more_groups) == -EBADMSG);
 	CHECK(strstr(verified.diagnostics.first.text, "more patch groups"));
+	spoil_solid = true;
+	CHECK(publish_and_verify(NULL) == -EBADMSG);
+	CHECK(strstr(verified.diagnostics.first.text, "where an eye may be"));
+	spoil_solid = false;
 }
 
 int main(void)
@@ -255,9 +352,9 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(the_base_and_the_blocks_are_the_cut, set_up,
 						tear_down),
-		cmocka_unit_test_setup_teardown(a_release_with_a_stream_is_whole, set_up,
-						tear_down),
-		cmocka_unit_test_setup_teardown(faults_of_a_stream_are_found, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(a_release_with_both_is_whole, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(an_eye_stays_above_the_hills, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(faults_of_both_are_found, set_up, tear_down),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
