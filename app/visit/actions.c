@@ -62,9 +62,22 @@ static int part_under(const struct actions *actions, float x_px, float y_px)
 	return *id ? info_find(info, id) : -1;
 }
 
+/* Something beside the scan, such as a door, answers the finger itself. */
+static bool touch_scenery(const struct actions *actions, float x_px, float y_px)
+{
+	struct scene *scene = actions->shown->scene;
+
+	viewport_to_panel(actions->viewport, &x_px, &y_px);
+	if (!scene || !actions->eye->ready ||
+	    !scene_touch(scene, &actions->eye->camera, x_px, y_px))
+		return false;
+	log_debug("app", "the scenery was touched");
+	return true;
+}
+
 void actions_show_part_at(const struct actions *actions, float x_px, float y_px)
 {
-	const int part = part_under(actions, x_px, y_px);
+	const int part = touch_scenery(actions, x_px, y_px) ? -1 : part_under(actions, x_px, y_px);
 
 	listening_end(actions->listening);
 	if (part >= 0 && part != overlay_card(overlay_of(actions)))

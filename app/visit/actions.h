@@ -24,7 +24,8 @@ struct actions {
 /* All functions need an overlay. Positions are in the visitor's pixels. */
 /* Carries out what a tap on the overlay means. */
 void actions_carry_out(const struct actions *actions, const struct overlay_action *action);
-/* Shows the card of the part that was tapped on the model, or closes the card. */
+/* Shows the card of the part that was tapped on the model, or closes the card. Scenery that a touch
+ * moves begins to move instead. */
 void actions_show_part_at(const struct actions *actions, float x_px, float y_px);
 /* Opens the page of the part that was double-tapped on the model, if there is one. */
 void actions_open_part_at(const struct actions *actions, float x_px, float y_px);

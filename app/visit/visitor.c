@@ -67,6 +67,8 @@ static void end_visit(struct visitor *visitor)
 	tour_player_end(env->tours);
 	tools_end(env->tools);
 	back_forget(env->back);
+	if (env->shown->scene)
+		scene_reset_scenery(env->shown->scene);
 	if (overlay)
 		reset_overlay(visitor, overlay);
 	visitor->down = 0;

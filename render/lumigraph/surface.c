@@ -13,7 +13,7 @@
 enum { DEPTH_UNIT = 2 }; /* first of the units for depths, one for each face of a piece */
 
 /* Positions are in metres relative to the eye, so that floats suffice anywhere in the model. */
-static const char vertex_common[] =
+const char surface_vertex_glsl[] =
 	"invariant gl_Position;\n" /* the mark is drawn over it at equal depth */
 	"attribute vec3 a_position, a_base;\n"
 	"attribute vec2 a_normal;\n"
@@ -62,7 +62,7 @@ static const char plain_vertex[] =
 /* Visible back faces are where the plane cuts solid matter: one flat colour, as in a section
  * drawing. In programs that look up textures, fragments that are cut away or dissolved are
  * discarded last. */
-static const char tools_fragment[] =
+const char surface_tools_glsl[] =
 	"#ifdef RAKE\n"
 	"uniform vec3 u_rake;\n"
 	"varying vec4 v_rake;\n"
@@ -89,8 +89,8 @@ static const char tools_fragment[] =
 
 /* A fixed number for each pixel, evenly distributed over any few neighbours: interleaved gradient
  * noise (Jimenez 2014, "Next generation post processing in Call of Duty: Advanced Warfare"). */
-static const char dissolve_none[] = "void dissolve() {}\n";
-static const char dissolve_some[] =
+const char surface_whole_glsl[] = "void dissolve() {}\n";
+const char surface_dissolve_glsl[] =
 	"#ifdef GL_FRAGMENT_PRECISION_HIGH\n"
 	"#define NUMBER highp\n"
 	"#define PIXEL gl_FragCoord.xy\n"
@@ -107,7 +107,7 @@ static const char dissolve_some[] =
 	"		discard;\n"
 	"}\n";
 
-static const char plain_fragment[] =
+const char surface_plain_glsl[] =
 	"varying vec4 v_colour;\n"
 	"uniform float u_share;\n"
 	"void main() {\n"
@@ -261,9 +261,9 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 		 tiles->slots_before);
 }
 
-static const char *const attributes[] = { "a_position", "a_normal", "a_colour", "a_base", NULL };
+const char *const surface_attributes[] = { "a_position", "a_normal", "a_colour", "a_base", NULL };
 
-static const char *const tool_defines[SURFACE_TOOLS] = {
+const char *const surface_defines[SURFACE_TOOLS] = {
 	[0] = "",
 	[SURFACE_RAKE] = "#define RAKE\n",
 	[SURFACE_CUT] = "#define CUT\n",
@@ -272,18 +272,19 @@ static const char *const tool_defines[SURFACE_TOOLS] = {
 
 static int init_plain(struct surface_program *p, unsigned tools, const char *dissolve)
 {
-	const char *defines = tool_defines[tools], *vertex = "", *fragment = "";
+	const char *defines = surface_defines[tools], *vertex = "", *fragment = "";
 	if (tools & SURFACE_RAKE) {
 		vertex = rake_vertex_glsl;
 		fragment = rake_fragment_glsl;
 	}
 	const struct gl_program_source source = {
 		.name = "patches",
-		.vertex = (const char *const[]){ defines, light_glsl, vertex, vertex_common,
+		.vertex = (const char *const[]){ defines, light_glsl, vertex, surface_vertex_glsl,
 						 plain_vertex, NULL },
 		.fragment = (const char *const[]){ "precision mediump float;\n", defines, fragment,
-						   tools_fragment, dissolve, plain_fragment, NULL },
-		.attributes = attributes,
+						   surface_tools_glsl, dissolve, surface_plain_glsl,
+						   NULL },
+		.attributes = surface_attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
 	if (rc == 0)
@@ -294,7 +295,7 @@ static int init_plain(struct surface_program *p, unsigned tools, const char *dis
 static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces,
 			unsigned tools, const char *dissolve)
 {
-	const char *defines = tool_defines[tools], *vertex = "", *fragment = "";
+	const char *defines = surface_defines[tools], *vertex = "", *fragment = "";
 	char constants[512];
 	if (tools & SURFACE_RAKE) {
 		vertex = rake_vertex_glsl;
@@ -304,11 +305,11 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 	const struct gl_program_source source = {
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ defines, constants, light_glsl, vertex,
-						 vertex_common, blended_vertex, NULL },
-		.fragment =
-			(const char *const[]){ gl_fine_fragment, defines, constants, fragment,
-					       tools_fragment, dissolve, blended_fragment, NULL },
-		.attributes = attributes,
+						 surface_vertex_glsl, blended_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, defines, constants, fragment,
+						   surface_tools_glsl, dissolve, blended_fragment,
+						   NULL },
+		.attributes = surface_attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
 	if (rc < 0)
@@ -327,7 +328,7 @@ static int init_program(struct surface *surface, unsigned tools, int program)
 {
 	struct surface_program *p = &surface->of[tools][program];
 	const int faces = surface_faces(program);
-	const char *dissolve = program == faces ? dissolve_none : dissolve_some;
+	const char *dissolve = program == faces ? surface_whole_glsl : surface_dissolve_glsl;
 	return faces == 0 ? init_plain(p, tools, dissolve)
 			  : init_blended(p, surface->tiles, faces, tools, dissolve);
 }
@@ -353,13 +354,17 @@ void surface_finish(struct surface *surface)
 	memset(surface, 0, sizeof(*surface));
 }
 
+unsigned surface_tools(const struct surface_frame *frame)
+{
+	return (frame->rake.on && !frame->shares ? SURFACE_RAKE : 0u) |
+	       (view_is_cut(frame->view) ? SURFACE_CUT : 0u);
+}
+
 /* Returns the program with the active tools; builds it where it is missing. */
 static const struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
 					 int program)
 {
-	unsigned tools = frame->rake.on && !frame->shares ? SURFACE_RAKE : 0;
-	if (view_is_cut(frame->view))
-		tools |= SURFACE_CUT;
+	const unsigned tools = surface_tools(frame);
 	if (!surface->of[tools][program].program && !surface->lacks[tools])
 		surface->lacks[tools] = init_program(surface, tools, program) < 0;
 	return &surface->of[surface->lacks[tools] ? 0 : tools][program];

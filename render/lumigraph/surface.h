@@ -50,6 +50,20 @@ struct surface_frame {
 	bool shares; /* draws the share of a pixel that images colour, instead of its colour */
 };
 
+/* Returns the active tools, bits of SURFACE_RAKE and SURFACE_CUT. */
+unsigned surface_tools(const struct surface_frame *frame);
+
+/* The GLSL of the cheapest programs, for others that draw surfaces under the same light and tools.
+ * A vertex shader is: surface_defines of the tools, light_glsl, rake_vertex_glsl where the tools
+ * have it, surface_vertex_glsl, and a main() that calls unit_normal(), own_colour() and use_tools()
+ * and sets v_colour. A fragment shader is: a precision, the defines, rake_fragment_glsl likewise,
+ * surface_tools_glsl, surface_whole_glsl or surface_dissolve_glsl, surface_plain_glsl. Uniforms are
+ * those of surface_begin. */
+extern const char *const surface_defines[SURFACE_TOOLS];
+extern const char surface_vertex_glsl[], surface_tools_glsl[], surface_plain_glsl[];
+extern const char surface_whole_glsl[], surface_dissolve_glsl[];
+extern const char *const surface_attributes[];
+
 /* Returns the program for a piece, by how many of its faces can be drawn now; negative where the
  * piece is drawn nowhere. */
 int surface_choose(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],

@@ -9,6 +9,7 @@
 
 #include "format/message.h"
 #include "format/root_page.h"
+#include "format/scenery.h"
 #include "geometry/camera.h"
 #include "geometry/region.h"
 #include "geometry/section.h"
@@ -106,6 +107,19 @@ struct scene_tools {
 };
 /* Sets the tools from now on; *tools is copied. */
 void scene_use(struct scene *scene, const struct scene_tools *tools);
+
+/* What stands beside the scan (format/scenery.h), once it is shown, else NULL. Borrowed until
+ * scene_open. */
+const struct scenery *scene_scenery(const struct scene *scene);
+/* A finger touched a pixel of the given camera. Returns whether scenery in front of all else
+ * answers: something begins to move. */
+bool scene_touch(struct scene *scene, const struct camera *camera, float x_px, float y_px);
+/* Returns the chosen layer. */
+uint32_t scene_layer(const struct scene *scene);
+/* Dissolves to a layer; one that there is not is ignored. */
+void scene_choose_layer(struct scene *scene, uint32_t layer);
+/* For the next visitor: all is as it was at first. */
+void scene_reset_scenery(struct scene *scene);
 
 /* The memory in use out of the budgets. */
 struct scene_memory {

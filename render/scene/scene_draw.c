@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_plan.h"
+#include "render/scene/scene_scenery.h"
 #include "render/scene/scene_stream.h"
 #include "render/scene/scene_visibility.h"
 #include "render/scene/scene_wants.h"
@@ -230,6 +231,7 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 	};
 	draw_pieces(scene, &frame);
 	scene_draw_stream(scene, &frame);
+	scene_draw_scenery(scene, &frame);
 }
 
 /* Returns the share of the model's pixels that images colour, from a small picture. */
@@ -290,24 +292,27 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 	scene->season_us = now_us;
 }
 
-static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
+/* Returns the time since the last frame. A long pause must not make fades jump. */
+static float passed_ms(const struct scene *scene)
+{
+	return scene->frame_us ? fminf((float)(clock_now_us() - scene->frame_us) / 1000, 100) : 0;
+}
+
+static void prepare(struct scene *scene, bool moved, float passed, struct scene_frame *out)
 {
 	int64_t now_us = clock_now_us();
-	/* A long pause must not make fades jump. */
-	float passed_ms =
-		scene->frame_us ? fminf((float)(now_us - scene->frame_us) / 1000, 100) : 0;
 	scene->frame_us = now_us;
 	int64_t upload_us = (int64_t)((float)scene->options.upload_budget_us * scene->used.budget);
 	/* Where a frame at full size takes long, the usual time would load little in a second. */
 	if (scene->still_frames > STILL_FRAMES && upload_us < UPLOAD_BUDGET_REST_US)
 		upload_us = UPLOAD_BUDGET_REST_US;
 	scene_upload(scene, now_us + upload_us, out);
-	scene_step_stream(scene, passed_ms);
+	scene_step_stream(scene, passed);
 	if (!scene->has_hierarchy) {
 		scene->plans_are_stale = scene->depth_is_stale = scene->fading = false;
 		return;
 	}
-	scene_update_cut(scene, passed_ms);
+	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
 	bool counted = scene_take_visibility(scene, moved);
 	scene_desire(scene);
@@ -319,7 +324,7 @@ static void prepare(struct scene *scene, bool moved, struct scene_frame *out)
 	keep_season(scene, moved, now_us);
 	scene_plan_pieces(scene, moved ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
 				       : PLAN_BUDGET_REST_US);
-	scene_fade_blends(scene, passed_ms);
+	scene_fade_blends(scene, passed);
 	if (moved && counted)
 		/* beside the picture one further pass per frame is enough */
 		scene->depth_is_stale = true;
@@ -429,12 +434,14 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	view_from_camera(&view, camera);
 	section_cut(&scene->tools.section, view.eye_m, view.cut);
 	bool moved = view_changed(scene, &view) || scene->tools_moved;
+	const float passed = passed_ms(scene);
+	moved = scene_step_scenery(scene, passed) || moved;
 	scene->tools_moved = false;
 	scene->still_frames = moved ? 0 : scene->still_frames + 1;
 	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;
 	scene->view = view;
 	scene->has_view = true;
-	prepare(scene, moved, out);
+	prepare(scene, moved, passed, out);
 	if (scene_note_mark(scene, mark))
 		/* it answers a touch, so it must appear at once */
 		accumulation_break(&scene->accumulation);

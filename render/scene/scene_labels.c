@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/scene/scene_scenery.h"
+
 bool scene_has_labels(const struct scene *scene)
 {
 	return scene->has_root &&
@@ -64,6 +66,8 @@ const char *scene_part(struct scene *scene, const struct camera *camera, float x
 	    !geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
 			  &hit))
 		return NULL;
+	if (scene_ray_scenery(scene, camera->eye_m, direction, least, &distance) != SCENERY_NONE)
+		return ""; /* it stands in front of the part */
 	const uint32_t group = scene->hierarchy.patches[hit.patch].group;
 	const struct label_group *labels = &scene->geometry.labels[group];
 	if (scene->labels_of[group] == LABEL_NONE)

@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_labels.h"
+#include "render/scene/scene_scenery.h"
 #include "render/scene/scene_stream.h"
 
 enum {
@@ -126,6 +127,7 @@ static void forget(struct scene *scene)
 	if (scene->has_hierarchy)
 		drop_hierarchy(scene);
 	scene_drop_stream(scene);
+	scene_drop_scenery(scene);
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
@@ -147,6 +149,7 @@ void scene_destroy(struct scene *scene)
 	enlargement_finish(&scene->enlargement);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);
+	scenery_picture_finish(&scene->scenery.picture);
 	depth_finish(&scene->depth);
 	tiles_finish(&scene->tiles);
 	map_finish(&scene->object_of);
@@ -323,6 +326,8 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 			       : stream_growth_open(&scene->stream.growth, bytes);
 	case OBJECT_BLOCK:
 		return stream_growth_give(&scene->stream.growth, (uint32_t)object->id, bytes);
+	case OBJECT_SCENERY:
+		return scene->scenery.is_here ? 0 : scene_open_scenery(scene, bytes);
 	}
 	return -EBADMSG;
 }
@@ -339,7 +344,8 @@ void scene_refuse(struct scene *scene, struct object *object, int error)
 					     "labels page",
 					     "labels",
 					     "stream page",
-					     "block of the streaming mesh" };
+					     "block of the streaming mesh",
+					     "scenery" };
 	char hex[HASH_HEX_BYTES];
 	hash_to_hex(object->hash, hex);
 	log_error("render", "content bug: %s %s cannot be used: %s", names[object->kind], hex,
@@ -422,8 +428,10 @@ bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, fl
 		return false;
 	camera_ray(camera, x_px, y_px, direction);
 	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
-	    !geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
-			  NULL))
+	    (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least,
+			   &distance, NULL) &
+	     (scene_ray_scenery(scene, camera->eye_m, direction, least, &distance) ==
+	      SCENERY_NONE)))
 		return false;
 	vec_add_scaled(point_m, camera->eye_m, distance, direction);
 	return true;

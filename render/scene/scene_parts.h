@@ -19,6 +19,7 @@
 #include "render/patches/stream_growth.h"
 #include "render/plan/plan.h"
 #include "render/scene/scene.h"
+#include "render/scenery/scenery_picture.h"
 
 enum object_kind {
 	OBJECT_ROOT,
@@ -32,6 +33,7 @@ enum object_kind {
 	OBJECT_LABELS, /* id: group */
 	OBJECT_STREAM,
 	OBJECT_BLOCK, /* id: block of the streaming mesh */
+	OBJECT_SCENERY,
 };
 
 enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
@@ -67,6 +69,14 @@ struct scene_stream {
 	struct stream_growth growth;
 	GLuint vertices, indices;
 	bool over; /* patches are shown: it is not wanted any more */
+};
+
+/* What stands beside the scan. */
+struct scene_scenery {
+	struct scenery content;
+	struct pose pose;
+	struct scenery_picture picture;
+	bool is_here;
 };
 
 struct scene {
@@ -114,6 +124,7 @@ struct scene {
 	uint32_t *group_priority; /* used while the wants are listed; owned */
 	struct repository repository;
 	struct scene_stream stream;
+	struct scene_scenery scenery;
 
 	struct scene_effort effort; /* while the eye moves */
 	struct scene_effort used;   /* in this frame */

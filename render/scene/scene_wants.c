@@ -370,6 +370,9 @@ void scene_list_wants(struct scene *scene)
 	if (!scene->repository.ready && images)
 		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
+	if (scene->root.has_scenery && !scene->scenery.is_here)
+		want_child_of_root(scene, OBJECT_SCENERY, scene->root_child_count - 1,
+				   FIRST_PRIORITY - 1);
 	if (scene->has_hierarchy)
 		want_groups(scene);
 	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))

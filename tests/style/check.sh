@@ -36,7 +36,8 @@ may_enter() {
 	case $1 in
 	render/lumigraph) answer="display plan patches" ;;
 	render/patches) answer="display plan" ;;
-	render/scene) answer="display plan patches lumigraph" ;;
+	render/scenery) answer="display lumigraph patches" ;;
+	render/scene) answer="display plan patches lumigraph scenery" ;;
 	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import" ;;
 	pipeline/octree | pipeline/deform) answer="import" ;;

@@ -1,0 +1,101 @@
+/* Keeps the scenery of the release, and answers touches on it. */
+#include "render/scene/scene_scenery.h"
+
+#include <math.h>
+
+#include "base/log.h"
+#include "format/scenery_code.h"
+
+int scene_open_scenery(struct scene *scene, struct bytes bytes)
+{
+	struct scene_scenery *own = &scene->scenery;
+	int rc = scenery_decode(&own->content, bytes);
+
+	if (rc == 0)
+		rc = pose_init(&own->pose, &own->content);
+	if (rc == 0)
+		rc = scenery_picture_load(&own->picture, &own->content);
+	if (rc < 0) {
+		scene_drop_scenery(scene);
+		return rc;
+	}
+	own->is_here = true;
+	log_debug("render", "scenery: %u triangles, %u motions, %u layers",
+		  scenery_triangles(&own->content), own->content.motion_count,
+		  own->content.layer_count);
+	return 0;
+}
+
+void scene_drop_scenery(struct scene *scene)
+{
+	struct scene_scenery *own = &scene->scenery;
+
+	scenery_picture_drop(&own->picture);
+	pose_finish(&own->pose);
+	scenery_finish(&own->content);
+	own->is_here = false;
+}
+
+/* It appears when there are patches to stand on. */
+static bool is_shown(const struct scene *scene)
+{
+	return scene->scenery.is_here && scene->has_hierarchy && scene->geometry.loaded[0];
+}
+
+bool scene_step_scenery(struct scene *scene, float passed_ms)
+{
+	return is_shown(scene) && pose_step(&scene->scenery.pose, passed_ms);
+}
+
+void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
+{
+	if (is_shown(scene) && !frame->shares)
+		scenery_picture_draw(&scene->scenery.picture, &scene->scenery.pose, frame);
+}
+
+uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],
+			   const float direction[3], float least_m, float *distance_m)
+{
+	return is_shown(scene)
+		       ? scenery_ray(&scene->scenery.pose, from_m, direction, least_m, distance_m)
+		       : SCENERY_NONE;
+}
+
+bool scene_touch(struct scene *scene, const struct camera *camera, float x_px, float y_px)
+{
+	float direction[3], distance = INFINITY, least = camera->near_m;
+	uint32_t node;
+
+	if (!is_shown(scene) || scene->scenery.content.touch_count == 0)
+		return false;
+	camera_ray(camera, x_px, y_px, direction);
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance))
+		return false;
+	/* What stands in front of it takes the touch. */
+	geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
+		     NULL);
+	node = scene_ray_scenery(scene, camera->eye_m, direction, least, &distance);
+	return node != SCENERY_NONE && pose_touch(&scene->scenery.pose, node);
+}
+
+const struct scenery *scene_scenery(const struct scene *scene)
+{
+	return is_shown(scene) ? &scene->scenery.content : NULL;
+}
+
+uint32_t scene_layer(const struct scene *scene)
+{
+	return scene->scenery.is_here ? scene->scenery.pose.layer : 0;
+}
+
+void scene_choose_layer(struct scene *scene, uint32_t layer)
+{
+	if (scene->scenery.is_here && layer < scene->scenery.content.layer_count)
+		pose_choose(&scene->scenery.pose, layer);
+}
+
+void scene_reset_scenery(struct scene *scene)
+{
+	if (scene->scenery.is_here)
+		pose_reset(&scene->scenery.pose);
+}

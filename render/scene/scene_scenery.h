@@ -1,0 +1,20 @@
+/* Scenery in the scene: its object, its time, its place in the picture. Private to render/scene. */
+#ifndef GOPURA_RENDER_SCENE_SCENE_SCENERY_H
+#define GOPURA_RENDER_SCENE_SCENE_SCENERY_H
+
+#include "render/scene/scene_parts.h"
+
+/* Takes the object. Errors as scenery_decode and gl_check. */
+must_check int scene_open_scenery(struct scene *scene, struct bytes bytes);
+/* Lets time pass; returns whether the picture changes. */
+bool scene_step_scenery(struct scene *scene, float passed_ms);
+/* Draws it over the patches. */
+void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame);
+/* Returns the node of the scenery that the ray meets before *distance_m, which is lowered to it, or
+ * SCENERY_NONE. */
+uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],
+			   const float direction[3], float least_m, float *distance_m);
+/* Frees it. */
+void scene_drop_scenery(struct scene *scene);
+
+#endif

@@ -1,0 +1,317 @@
+/* Runs motions, and places nodes by them. */
+#include "render/scenery/pose.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+
+static const float dissolve_ms = 900, appear_ms = 600;
+
+/* ---- values */
+
+/* Between two turns, the shorter way round at an even speed. */
+static void between_turns(float out[4], const float a[4], const float b[4], float share)
+{
+	float cosine = 0, sign = 1, from = 1 - share, to = share, length = 0;
+
+	for (int k = 0; k < 4; k++)
+		cosine += a[k] * b[k];
+	if (cosine < 0)
+		sign = -1;
+	cosine *= sign;
+	if (cosine < 0.9995f) {
+		const float angle = acosf(vec_least(cosine, 1));
+
+		from = sinf((1 - share) * angle) / sinf(angle);
+		to = sinf(share * angle) / sinf(angle);
+	}
+	for (int k = 0; k < 4; k++) {
+		out[k] = from * a[k] + to * sign * b[k];
+		length += out[k] * out[k];
+	}
+	for (int k = 0; k < 4 && length > 0; k++)
+		out[k] /= sqrtf(length);
+}
+
+void pose_value(const struct scenery *scenery, const struct scenery_track *track, float share,
+		float *out)
+{
+	const uint32_t width = scenery_width(track->target);
+	const float *times = &scenery->numbers[track->first];
+	const float *values = times + track->key_count;
+	uint32_t after = 0;
+	float span, part;
+
+	while (after < track->key_count && times[after] <= share)
+		after++;
+	if (after == 0 || after == track->key_count) {
+		memcpy(out, &values[(after > 0 ? after - 1 : 0) * width], width * sizeof(*out));
+		return;
+	}
+	span = times[after] - times[after - 1];
+	part = span > 0 ? (share - times[after - 1]) / span : 1;
+	if (track->target == SCENERY_TURN) {
+		between_turns(out, &values[(after - 1) * 4], &values[after * 4], part);
+		return;
+	}
+	for (uint32_t k = 0; k < width; k++) {
+		const float from = values[(after - 1) * width + k], to = values[after * width + k];
+
+		out[k] = from + part * (to - from);
+	}
+}
+
+/* Sets the upper left of a matrix to a turn; the rest must be set. */
+static void set_turn(float m[16], const float q[4])
+{
+	const float x = q[0], y = q[1], z = q[2], w = q[3];
+
+	m[0] = 1 - 2 * (y * y + z * z);
+	m[1] = 2 * (x * y + z * w);
+	m[2] = 2 * (x * z - y * w);
+	m[4] = 2 * (x * y - z * w);
+	m[5] = 1 - 2 * (x * x + z * z);
+	m[6] = 2 * (y * z + x * w);
+	m[8] = 2 * (x * z + y * w);
+	m[9] = 2 * (y * z - x * w);
+	m[10] = 1 - 2 * (x * x + y * y);
+}
+
+void pose_matrix(float out[16], const struct scenery_place *place)
+{
+	float turn[16] = { [15] = 1 }, stretch[16] = { [15] = 1 }, back[16] = { [15] = 1 };
+	float scaled[16];
+	const float *c = place->centre_m;
+
+	set_turn(turn, place->turn);
+	set_turn(stretch, place->stretch);
+	for (int column = 0; column < 3; column++)
+		for (int row = 0; row < 3; row++)
+			back[4 * column + row] = place->scale[row] * stretch[4 * row + column];
+	matrix_multiply(scaled, stretch, back);
+	matrix_multiply(out, turn, scaled);
+	for (int row = 0; row < 3; row++)
+		out[12 + row] = place->move_m[row] + c[row] - out[row] * c[0] -
+				out[4 + row] * c[1] - out[8 + row] * c[2];
+}
+
+/* ---- nodes */
+
+/* The range of a root's pixels: that of its layer. */
+static void root_range(const struct pose *pose, uint32_t layer, float *low, float *high)
+{
+	*low = 0;
+	*high = 1;
+	if (layer == SCENERY_NONE)
+		return;
+	for (uint32_t i = 0; i < layer; i++)
+		*low += pose->layer_shares[i];
+	*high = *low + pose->layer_shares[layer];
+}
+
+static void place_nodes(struct pose *pose)
+{
+	for (uint32_t i = 0; i < pose->scenery->node_count; i++) {
+		const struct scenery_node *from = &pose->scenery->nodes[i];
+		struct pose_node *node = &pose->nodes[i];
+		float own[16];
+
+		pose_matrix(own, &pose->places[i]);
+		if (from->parent == SCENERY_NONE) {
+			memcpy(node->matrix, own, sizeof(own));
+			root_range(pose, from->layer, &node->low, &node->high);
+			node->high = node->low + (node->high - node->low) * pose->appeared;
+		} else {
+			const struct pose_node *parent = &pose->nodes[from->parent];
+
+			matrix_multiply(node->matrix, parent->matrix, own);
+			node->low = parent->low;
+			node->high = parent->high;
+		}
+		node->high = node->low + (node->high - node->low) * pose->opacity[i];
+	}
+}
+
+static void apply(struct pose *pose, const struct scenery_motion *motion, float share)
+{
+	for (uint32_t t = 0; t < motion->track_count; t++) {
+		const struct scenery_track *track = &pose->scenery->tracks[motion->first_track + t];
+		struct scenery_place *place = &pose->places[track->node];
+
+		switch (track->target) {
+		case SCENERY_MOVE:
+			pose_value(pose->scenery, track, share, place->move_m);
+			break;
+		case SCENERY_TURN:
+			pose_value(pose->scenery, track, share, place->turn);
+			break;
+		case SCENERY_SCALE:
+			pose_value(pose->scenery, track, share, place->scale);
+			break;
+		default:
+			pose_value(pose->scenery, track, share, &pose->opacity[track->node]);
+			break;
+		}
+	}
+}
+
+static bool is_touched(const struct scenery *scenery, uint32_t motion)
+{
+	for (uint32_t i = 0; i < scenery->touch_count; i++)
+		if (scenery->touches[i].motion == motion)
+			return true;
+	return false;
+}
+
+int pose_init(struct pose *pose, const struct scenery *scenery)
+{
+	const uint32_t nodes = scenery->node_count;
+
+	*pose = (struct pose){ .scenery = scenery, .layer_shares = { 1 } };
+	pose->nodes = calloc(nodes + 1, sizeof(*pose->nodes));
+	pose->places = calloc(nodes + 1, sizeof(*pose->places));
+	pose->opacity = calloc(nodes + 1, sizeof(*pose->opacity));
+	pose->motions = calloc(scenery->motion_count + 1, sizeof(*pose->motions));
+	if (!pose->nodes || !pose->places || !pose->opacity || !pose->motions) {
+		pose_finish(pose);
+		return -ENOMEM;
+	}
+	for (uint32_t i = 0; i < nodes; i++) {
+		pose->places[i] = scenery->nodes[i].place;
+		pose->opacity[i] = 1;
+	}
+	for (uint32_t i = 0; i < scenery->motion_count; i++)
+		pose->motions[i].runs = !is_touched(scenery, i);
+	place_nodes(pose);
+	return 0;
+}
+
+void pose_finish(struct pose *pose)
+{
+	if (!pose)
+		return;
+	free(pose->nodes);
+	free(pose->places);
+	free(pose->opacity);
+	free(pose->motions);
+	*pose = (struct pose){ 0 };
+}
+
+/* ---- time */
+
+static void step_motion(struct pose *pose, uint32_t i, float passed_ms)
+{
+	const struct scenery_motion *motion = &pose->scenery->motions[i];
+	struct pose_motion *now = &pose->motions[i];
+	const float passed = passed_ms / (1000 * motion->duration_s);
+
+	now->share += now->is_backwards ? -passed : passed;
+	if (motion->loops) {
+		now->share -= floorf(now->share);
+	} else if (now->share >= 1 || now->share <= 0) {
+		now->share = now->is_backwards ? 0 : 1;
+		now->runs = false;
+	}
+	apply(pose, motion, now->share);
+}
+
+/* Raises the share of the chosen layer; the others keep their proportions. */
+static void step_layers(struct pose *pose, float passed_ms)
+{
+	float *chosen = &pose->layer_shares[pose->layer];
+	const float share = vec_least(*chosen + passed_ms / dissolve_ms, 1);
+	const float others = *chosen < 1 ? (1 - share) / (1 - *chosen) : 0;
+
+	for (uint32_t i = 0; i < pose->scenery->layer_count; i++)
+		pose->layer_shares[i] *= others;
+	*chosen = share;
+}
+
+bool pose_moves(const struct pose *pose)
+{
+	if (pose->scenery->node_count == 0)
+		return false;
+	for (uint32_t i = 0; i < pose->scenery->motion_count; i++)
+		if (pose->motions[i].runs)
+			return true;
+	return pose->appeared < 1 || pose->layer_shares[pose->layer] < 1;
+}
+
+bool pose_step(struct pose *pose, float passed_ms)
+{
+	if (!pose_moves(pose))
+		return false;
+	for (uint32_t i = 0; i < pose->scenery->motion_count; i++)
+		if (pose->motions[i].runs)
+			step_motion(pose, i, passed_ms);
+	step_layers(pose, passed_ms);
+	pose->appeared = vec_least(pose->appeared + passed_ms / appear_ms, 1);
+	place_nodes(pose);
+	return true;
+}
+
+/* ---- visitors */
+
+/* What began is not begun again while it runs, as VRML97 4.6.9 has it; but it turns back. */
+static void start(struct pose *pose, uint32_t i)
+{
+	const struct scenery_motion *motion = &pose->scenery->motions[i];
+	struct pose_motion *now = &pose->motions[i];
+
+	if (motion->loops) {
+		now->runs = !now->runs;
+	} else if (motion->returns) {
+		now->is_backwards = now->runs ? !now->is_backwards : now->share > 0;
+		now->runs = true;
+	} else if (!now->runs) {
+		now->share = 0;
+		now->runs = true;
+	}
+}
+
+bool pose_touch(struct pose *pose, uint32_t node)
+{
+	const struct scenery *scenery = pose->scenery;
+	bool answers = false;
+
+	/* The innermost node that a touch is for. */
+	for (; node != SCENERY_NONE && !answers; node = scenery->nodes[node].parent)
+		for (uint32_t i = 0; i < scenery->touch_count; i++)
+			if (scenery->touches[i].node == node) {
+				start(pose, scenery->touches[i].motion);
+				answers = true;
+			}
+	return answers;
+}
+
+void pose_choose(struct pose *pose, uint32_t layer)
+{
+	pose->layer = layer;
+}
+
+void pose_reset(struct pose *pose)
+{
+	const struct scenery *scenery = pose->scenery;
+
+	pose->layer = 0;
+	for (uint32_t i = 0; i < scenery->motion_count; i++) {
+		struct pose_motion *now = &pose->motions[i];
+
+		if (!is_touched(scenery, i))
+			continue;
+		if (scenery->motions[i].returns && now->share > 0) {
+			now->runs = now->is_backwards = true;
+			continue;
+		}
+		*now = (struct pose_motion){ 0 };
+		for (uint32_t t = 0; t < scenery->motions[i].track_count; t++) {
+			uint32_t node = scenery->tracks[scenery->motions[i].first_track + t].node;
+
+			pose->places[node] = scenery->nodes[node].place;
+			pose->opacity[node] = 1;
+		}
+	}
+	place_nodes(pose);
+}

@@ -1,0 +1,54 @@
+/* How scenery stands at a moment: which motions run, where each node is, and which layer is seen.
+ * Pure: no GL, no clock. */
+#ifndef GOPURA_RENDER_SCENERY_POSE_H
+#define GOPURA_RENDER_SCENERY_POSE_H
+
+#include "format/scenery.h"
+
+struct pose_node {
+	float matrix[16]; /* column-major; from the node to metres of the model */
+	/* Drawn in the pixels whose fixed number lies in this range of 0 to 1 (struct
+	 * dissolve_range); layers that dissolve into each other share it. */
+	float low, high;
+};
+
+struct pose_motion {
+	float share; /* of its time, 0 to 1 */
+	bool runs, is_backwards;
+};
+
+struct pose {
+	const struct scenery *scenery; /* borrowed */
+	struct pose_node *nodes;       /* this and the next three are owned */
+	struct scenery_place *places;
+	float *opacity;
+	struct pose_motion *motions;
+	uint32_t layer;                         /* the chosen one */
+	float layer_shares[SCENERY_LAYERS_MAX]; /* their sum is 1 */
+	float appeared;                         /* all of it, 0 to 1 */
+};
+
+/* Stands as the content says, with the first layer; nothing has appeared yet. scenery is borrowed
+ * for the lifetime. -ENOMEM; *pose is then zeroed. */
+must_check int pose_init(struct pose *pose, const struct scenery *scenery);
+void pose_finish(struct pose *pose); /* NULL and zeroed are fine */
+
+/* Lets time pass. Returns whether anything that is drawn changed. */
+bool pose_step(struct pose *pose, float passed_ms);
+/* Returns whether pose_step would change anything. */
+bool pose_moves(const struct pose *pose);
+/* A finger touched a mesh of that node. Starts or stops what the touch is for; returns whether it
+ * is for anything. */
+bool pose_touch(struct pose *pose, uint32_t node);
+/* Dissolves to a layer, less than layer_count. */
+void pose_choose(struct pose *pose, uint32_t layer);
+/* For the next visitor: doors close, and the first layer comes back. */
+void pose_reset(struct pose *pose);
+
+/* Sets out to the value of a track at a share of its motion; scenery_width() numbers. */
+void pose_value(const struct scenery *scenery, const struct scenery_track *track, float share,
+		float *out);
+/* Sets out to the matrix of a place, from the node to its parent. */
+void pose_matrix(float out[16], const struct scenery_place *place);
+
+#endif

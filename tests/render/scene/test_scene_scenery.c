@@ -1,0 +1,252 @@
+/* What stands beside the scan in pictures: it hides and is hidden, answers a touch, and dissolves
+ * with its layer. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/picture.h"
+#include "format/scenery_code.h"
+#include "geometry/vec.h"
+#include "geometry/view.h"
+#include "render/display/gl.h"
+#include "render/display/headless.h"
+#include "render/scene/scene_parts.h"
+#include "tests/format/little_scenery.h"
+#include "tests/render/scene/little_stream.h"
+
+enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES_MAX = 3000 };
+
+static struct little_release *release; /* made once for all tests */
+
+struct stage {
+	struct headless *headless;
+	struct gl_target target;
+	struct scene *scene;
+	struct scene_frame frame;
+	uint8_t seen[4 * PIXELS];
+};
+
+static struct stage stage;
+
+static const struct camera eye = {
+	.eye_m = { 10, -12, 5 },
+	.target_m = { 0, 0, 1.5f },
+	.up = { 0, 0, 1 },
+	.fov_deg = 45,
+	.near_m = 0.1f,
+	.far_m = 200,
+	.width_px = WIDTH,
+	.height_px = HEIGHT,
+};
+
+/* Places: the door is 3 m wide, in front of the pillars; the second layer has a wall of 5 m between
+ * those in front. The door takes a fifth of a second and stays solid. */
+static void add_scenery(struct little_release *r)
+{
+	struct page_child children[ROOT_CHILDREN_MAX], child;
+	struct little_scenery s;
+	struct root_page root;
+	struct buffer bytes;
+	struct page page;
+
+	little_scenery_init(&s);
+	memcpy(s.nodes[0].place.move_m, (float[3]){ 0, -6, 0 }, 12);
+	memcpy(s.nodes[0].place.scale, (float[3]){ 3, 3, 3 }, 12);
+	memcpy(s.nodes[2].place.move_m, (float[3]){ -3, -4, 0 }, 12);
+	memcpy(s.nodes[2].place.scale, (float[3]){ 5, 5, 5 }, 12);
+	s.motion.duration_s = 0.2f;
+	s.numbers[13] = 1;
+	buffer_init(&bytes, 1 << 20);
+	CHECK(scenery_encode(&bytes, &s.scenery) == 0);
+	CHECK(page_decode(&page, little_object_bytes(r, r->root)) == 0);
+	CHECK(root_page_decode(&root, page.payload) == 0);
+	memcpy(children, page.children, page.child_count * sizeof(*children));
+	children[page.child_count] = little_add(r, &bytes, false);
+	root.has_scenery = 1;
+	buffer_clear(&bytes);
+	root_page_encode(&bytes, &root);
+	child = little_page(r, PAGE_ROOT, children, page.child_count + 1, &bytes);
+	r->root = child.hash;
+	r->root_bytes = child.size;
+	page_finish(&page);
+	buffer_finish(&bytes);
+}
+
+static int raise_stage(void **state)
+{
+	static const struct scene_options usual = {
+		.mode = SCENE_LUMIGRAPH,
+		.texture_budget_bytes = 96 << 20,
+		.geometry_budget_bytes = 64 << 20,
+		.triangle_budget = 200000,
+		.patch_error_px = 1,
+		.upload_budget_us = 20000,
+		.worker_count = 2,
+	};
+
+	(void)state;
+	memset(&stage, 0, sizeof(stage));
+	CHECK(headless_create(&stage.headless) == 0);
+	CHECK(gl_target_create(&stage.target, WIDTH, HEIGHT) == 0);
+	CHECK(scene_create(&stage.scene, &usual) == 0);
+	return scene_open(stage.scene, release->root, release->root_bytes);
+}
+
+static int strike_stage(void **state)
+{
+	(void)state;
+	scene_destroy(stage.scene);
+	gl_target_destroy(&stage.target);
+	CHECK(gl_check("the test") == 0);
+	headless_destroy(stage.headless);
+	return 0;
+}
+
+static void settle(const char *name)
+{
+	char path[512];
+	struct buffer file;
+
+	stage.frame.settled = false;
+	for (int frames = 0; !stage.frame.settled; frames++) {
+		CHECK(frames < FRAMES_MAX);
+		gl_target_bind(&stage.target);
+		CHECK(scene_dispatch(stage.scene) == 0);
+		scene_draw(stage.scene, &eye, NULL, &stage.frame);
+		little_release_serve(release, stage.scene, 16);
+	}
+	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+	if (!getenv("KEEP_PICTURES"))
+		return;
+	buffer_init(&file, 64 << 20);
+	CHECK(picture_encode_png(&file, &(struct picture){ WIDTH, HEIGHT, stage.seen }) == 0);
+	snprintf(path, sizeof(path), "%s/scenery-%s.png", getenv("KEEP_PICTURES"), name);
+	CHECK(bytes_write_file(buffer_bytes(&file), path) == 0);
+	buffer_finish(&file);
+}
+
+/* The pixel of a place. */
+static void project(float x, float y, float z, float at[2])
+{
+	struct view view;
+	float from[3], clip[4];
+
+	view_from_camera(&view, &eye);
+	vec_sub(from, (float[3]){ x, y, z }, view.eye_m);
+	for (int row = 0; row < 4; row++)
+		clip[row] = view.clip[row] * from[0] + view.clip[4 + row] * from[1] +
+			    view.clip[8 + row] * from[2] + view.clip[12 + row];
+	at[0] = (clip[0] / clip[3] + 1) / 2 * WIDTH;
+	at[1] = (1 - clip[1] / clip[3]) / 2 * HEIGHT;
+}
+
+/* Whether the picture shows the wood of the scenery at a place, lit or not. */
+static bool is_wood(float x, float y, float z)
+{
+	const uint8_t *pixel;
+	float at[2];
+
+	project(x, y, z, at);
+	pixel = &stage.seen[4 * ((int)at[1] * WIDTH + (int)at[0])];
+	return abs(2 * pixel[0] - 3 * pixel[1]) < 12 && abs(pixel[1] - 2 * pixel[2]) < 12;
+}
+
+/* How many pixels are seen to differ from another picture. Which images colour a settled view may
+ * depend on the way to it. */
+static int differing(const uint8_t *other)
+{
+	int count = 0;
+
+	for (int i = 0; i < 4 * PIXELS; i += 4)
+		count += abs(stage.seen[i] - other[i]) > 16 ||
+			 abs(stage.seen[i + 1] - other[i + 1]) > 16;
+	return count;
+}
+
+static bool touch(float x, float y, float z)
+{
+	float at[2];
+
+	project(x, y, z, at);
+	return scene_touch(stage.scene, &eye, at[0], at[1]);
+}
+
+static void a_door_answers_a_finger_and_closes_again(void **state)
+{
+	static uint8_t closed[4 * PIXELS];
+	float at[2], point[3];
+
+	(void)state;
+	settle("closed");
+	memcpy(closed, stage.seen, sizeof(closed));
+	CHECK(is_wood(1.5f, -6, 1.5f) && is_wood(2.8f, -6, 0.3f) && !is_wood(3.3f, -6, 1.5f));
+	project(1.5f, -6, 1.5f, at);
+	CHECK(scene_pick(stage.scene, &eye, at[0], at[1], point));
+	CHECK(fabsf(point[1] + 6) < 0.02f && fabsf(point[0] - 1.5f) < 0.02f);
+	CHECK(!touch(4, -5, 2));  /* a pillar */
+	CHECK(!touch(0, 30, 30)); /* the sky */
+	CHECK(touch(1.5f, -6, 1.5f));
+	settle("open");
+	CHECK(differing(closed) > PIXELS / 100);
+	CHECK(!is_wood(2.8f, -6, 0.3f) && is_wood(0, -4.5f, 1.5f));
+	CHECK(!touch(2.8f, -6, 0.3f)); /* it is not there any more */
+	CHECK(touch(0, -4.5f, 1.5f));
+	settle("closed-again");
+	CHECK(differing(closed) < PIXELS / 400);
+}
+
+static void a_pillar_in_front_hides_the_second_layer(void **state)
+{
+	static uint8_t found[4 * PIXELS];
+
+	(void)state;
+	settle("found");
+	memcpy(found, stage.seen, sizeof(found));
+	CHECK(!is_wood(0, -4, 4) && scene_layer(stage.scene) == 0);
+	CHECK(scene_scenery(stage.scene)->layer_count == 2);
+	scene_choose_layer(stage.scene, 7); /* there is none */
+	CHECK(scene_layer(stage.scene) == 0);
+	scene_choose_layer(stage.scene, 1);
+	settle("built");
+	CHECK(is_wood(0, -4, 4) && !is_wood(2, -4, 3) /* behind the pillar */);
+	scene_reset_scenery(stage.scene);
+	settle("found-again");
+	CHECK(differing(found) < PIXELS / 400);
+}
+
+static void a_section_cuts_it_too(void **state)
+{
+	struct scene_tools tools = { .section = { .on = false } };
+
+	(void)state;
+	section_init(&tools.section, (float[3]){ -8, -8, -0.5f }, (float[3]){ 8, 8, 5 });
+	section_face(&tools.section, eye.eye_m, (float[3]){ 0, 1, 0 });
+	section_push(&tools.section, 4); /* y = -4: behind the door */
+	scene_use(stage.scene, &tools);
+	settle("cut");
+	CHECK(!is_wood(1.5f, -6, 1.5f) && !touch(1.5f, -6, 1.5f));
+	tools.section.on = false;
+	tools.rake.on = true;
+	rake_place(&tools.rake, -0.6f, 0.5f);
+	scene_use(stage.scene, &tools);
+	settle("rake");
+	CHECK(is_wood(1.5f, -6, 1.5f));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(a_door_answers_a_finger_and_closes_again,
+						raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_pillar_in_front_hides_the_second_layer,
+						raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_section_cuts_it_too, raise_stage, strike_stage),
+	};
+	int failed;
+
+	release = little_release_make(2);
+	add_scenery(release);
+	failed = cmocka_run_group_tests(tests, NULL, NULL);
+	little_release_free(release);
+	return failed;
+}

@@ -1,0 +1,153 @@
+/* Scenery in time: a door opens when it is touched and closes again, layers dissolve. */
+#include "render/scenery/pose.h"
+
+#include <math.h>
+
+#include "tests/check.h"
+#include "tests/format/little_scenery.h"
+
+enum { DOOR = 1, ROOF = 2 };
+
+static bool is_near(float a, float b)
+{
+	return fabsf(a - b) < 1e-4f;
+}
+
+/* Where the door's far lower corner is: at x = 1 at rest, at y = 1 when it is open. */
+static void corner_of(const struct pose *pose, float out[3])
+{
+	const float *m = pose->nodes[DOOR].matrix;
+
+	for (int k = 0; k < 3; k++)
+		out[k] = m[k] + m[12 + k];
+}
+
+static void run(struct pose *pose, float ms)
+{
+	for (; ms > 0; ms -= 10)
+		pose_step(pose, 10);
+}
+
+static void a_door_opens_and_closes(void **state)
+{
+	struct little_scenery s;
+	struct pose pose;
+	float at[3];
+
+	(void)state;
+	little_scenery_init(&s);
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	run(&pose, 700);
+	CHECK(!pose_moves(&pose)); /* it has appeared, and waits */
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 1) && is_near(at[1], 0));
+	CHECK(!pose_touch(&pose, ROOF));
+	CHECK(pose_touch(&pose, DOOR)); /* by the node above it */
+	run(&pose, 1000);
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], sqrtf(0.5f)) && is_near(at[1], sqrtf(0.5f)));
+	run(&pose, 1100);
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 0) && is_near(at[1], 1) && !pose_moves(&pose));
+	CHECK(is_near(pose.nodes[DOOR].high, 0.5f)); /* half as solid */
+	CHECK(pose_touch(&pose, DOOR));
+	run(&pose, 2100);
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 1) && !pose_moves(&pose));
+	pose_finish(&pose);
+}
+
+static void a_touch_on_the_way_turns_it_back(void **state)
+{
+	struct little_scenery s;
+	struct pose pose;
+	float at[3];
+
+	(void)state;
+	little_scenery_init(&s);
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	CHECK(pose_touch(&pose, DOOR));
+	run(&pose, 500);
+	CHECK(pose_touch(&pose, DOOR));
+	run(&pose, 510);
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 1) && !pose.motions[0].runs);
+	pose_touch(&pose, DOOR);
+	run(&pose, 2100);
+	pose_reset(&pose); /* the visitor has gone */
+	run(&pose, 2100);
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 1) && !pose_moves(&pose));
+	pose_finish(&pose);
+}
+
+static void layers_share_the_pixels_while_they_dissolve(void **state)
+{
+	struct little_scenery s;
+	struct pose pose;
+
+	(void)state;
+	little_scenery_init(&s);
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	run(&pose, 700);
+	CHECK(pose.nodes[ROOF].high <= pose.nodes[ROOF].low); /* in the second layer */
+	pose_choose(&pose, 1);
+	CHECK(pose_moves(&pose));
+	run(&pose, 450);
+	CHECK(is_near(pose.nodes[ROOF].low, 0.5f) && is_near(pose.nodes[ROOF].high, 1));
+	run(&pose, 500);
+	CHECK(pose.nodes[ROOF].low == 0 && pose.nodes[ROOF].high == 1 && !pose_moves(&pose));
+	pose_reset(&pose);
+	run(&pose, 1000);
+	CHECK(pose.layer_shares[0] == 1 && pose.nodes[ROOF].high <= pose.nodes[ROOF].low);
+	pose_finish(&pose);
+}
+
+/* VRML97 6.52: T C R SR S -SR -C. */
+static void a_place_turns_and_scales_about_its_centre(void **state)
+{
+	const float h = sqrtf(0.5f);
+	const struct scenery_place place = { .move_m = { 10, 0, 0 },
+					     .turn = { 0, 0, h, h }, /* 90 degrees about z */
+					     .scale = { 2, 1, 1 },
+					     .centre_m = { 1, 0, 0 },
+					     .stretch = { 0, 0, h, h } };
+	float m[16], at[3];
+
+	(void)state;
+	pose_matrix(m, &place);
+	/* The stretch makes y what is scaled: (1, 1, 0) is 1 above the centre, becomes 2 above,
+	 * and turns to the left of it. */
+	for (int k = 0; k < 3; k++)
+		at[k] = m[k] + m[4 + k] + m[12 + k];
+	CHECK(is_near(at[0], 10 + 1 - 2) && is_near(at[1], 0) && is_near(at[2], 0));
+}
+
+static void steps_and_single_keys_have_values(void **state)
+{
+	float numbers[] = { 0, 0.5f, 0.5f, 1, /* values */ 0, 0, 1, 1 }, value;
+	struct scenery scenery = { .numbers = numbers };
+	const struct scenery_track track = { .target = SCENERY_OPACITY, .key_count = 4 };
+	const struct scenery_track one = { .target = SCENERY_OPACITY, .key_count = 1, .first = 3 };
+
+	(void)state;
+	pose_value(&scenery, &track, 0.49f, &value);
+	CHECK(value == 0);
+	pose_value(&scenery, &track, 0.5f, &value);
+	CHECK(value == 1);
+	pose_value(&scenery, &one, 0.2f, &value); /* before its only key, at 1 */
+	CHECK(value == 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_door_opens_and_closes),
+		cmocka_unit_test(a_touch_on_the_way_turns_it_back),
+		cmocka_unit_test(layers_share_the_pixels_while_they_dissolve),
+		cmocka_unit_test(a_place_turns_and_scales_about_its_centre),
+		cmocka_unit_test(steps_and_single_keys_have_values),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
