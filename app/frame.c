@@ -6,6 +6,7 @@
 #include <malloc.h>
 #include <math.h>
 
+#include "app/visit/layer_choice.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "render/display/context.h"
@@ -229,6 +230,7 @@ int frame_draw(struct frame *frame)
 	move_eye(frame, now_ms);
 	frame->last_ms = now_ms;
 	tools_show(o->tools);
+	layer_choice_show(shown_by(frame));
 	back_show(o->back);
 	sessions_warm(o->sessions);
 	gpu_timer_begin(&frame->timer);

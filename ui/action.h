@@ -22,6 +22,7 @@ enum overlay_action_kind {
 	OVERLAY_REACH,      /* toggle reach mode */
 	OVERLAY_LIGHT,      /* toggle this tool */
 	OVERLAY_SECTION,    /* toggle this tool */
+	OVERLAY_CHOICE,     /* choice: this state of the site was chosen */
 	OVERLAY_KEY,        /* key: for overlay_press */
 	OVERLAY_FOUND,      /* part: a search result was tapped */
 	OVERLAY_PICTURE,    /* picture: for overlay_show_picture */
@@ -39,6 +40,7 @@ struct overlay_action {
 	int key;              /* for OVERLAY_KEY */
 	int picture;          /* for OVERLAY_PICTURE */
 	int tour;             /* for OVERLAY_TOUR */
+	unsigned choice;      /* for OVERLAY_CHOICE */
 	const char *language; /* borrowed until the overlay is destroyed; else NULL */
 	const char *link;     /* borrowed until the page changes; else NULL */
 };

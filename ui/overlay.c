@@ -49,6 +49,7 @@ static void start_views(struct overlay *overlay)
 	bar_view_init(&overlay->bar, &next_id);
 	callouts_view_init(&overlay->callouts, theme, &next_id);
 	card_view_init(&overlay->card, &next_id);
+	choice_view_init(&overlay->choice, &next_id);
 	gallery_view_init(&overlay->gallery, theme, &next_id);
 	help_view_init(&overlay->help, theme, &next_id);
 	invitation_view_init(&overlay->invitation, &next_id);
@@ -116,6 +117,7 @@ void overlay_destroy(struct overlay *overlay)
 	bar_view_finish(&overlay->bar);
 	callouts_view_finish(&overlay->callouts);
 	card_view_finish(&overlay->card);
+	choice_view_finish(&overlay->choice);
 	gallery_view_finish(&overlay->gallery);
 	help_view_finish(&overlay->help);
 	invitation_view_finish(&overlay->invitation);
@@ -177,7 +179,7 @@ static void redraw_words(struct overlay *overlay)
 	search_view_redraw(&overlay->search, &screen);
 	overlay->help.dirty = overlay->card.dirty = overlay->page.head_dirty = true;
 	overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
-	overlay->languages_view.dirty = overlay->question.dirty = true;
+	overlay->languages_view.dirty = overlay->question.dirty = overlay->choice.dirty = true;
 }
 
 void overlay_language(struct overlay *overlay, const char *language)
@@ -477,6 +479,12 @@ void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *sta
 				  false); /* help and tools share their place on small panels */
 }
 
+void overlay_show_choice(struct overlay *overlay, const char *const *titles, uint32_t count,
+			 uint32_t chosen)
+{
+	choice_view_set(&overlay->choice, titles, count, chosen);
+}
+
 /* ---- comfort ---- */
 
 struct overlay_comfort overlay_comfort(const struct overlay *overlay)
@@ -516,6 +524,15 @@ static bool on_tools(const struct overlay *overlay, const struct screen *screen,
 	return tools_view_covers(&overlay->tools, screen, &obstacles, x_px, y_px);
 }
 
+static bool on_choice(const struct overlay *overlay, const struct screen *screen, float x_px,
+		      float y_px)
+{
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
+
+	return choice_view_shows(&overlay->choice, screen, &obstacles) &&
+	       rect_holds(choice_view_rect(&overlay->choice, screen), x_px, y_px);
+}
+
 struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, float y_px)
 {
 	const struct screen screen = overlay_screen(overlay);
@@ -528,6 +545,8 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 		return languages_view_tap(&screen, &overlay->languages, x_px, y_px);
 	if (overlay->gallery.fade.on)
 		return gallery_view_tap(&overlay->gallery, &screen, x_px, y_px);
+	if (on_choice(overlay, &screen, x_px, y_px))
+		return choice_view_tap(&overlay->choice, &screen, x_px);
 	if (overlay->search.fade.on && rect_holds(search_view_rect(&screen), x_px, y_px))
 		return search_view_tap(&overlay->search, &screen, x_px, y_px);
 	if (overlay->card.part >= 0 && rect_holds(card_view_rect(&screen), x_px, y_px))
@@ -579,7 +598,7 @@ bool overlay_covers(const struct overlay *overlay, float x_px, float y_px)
 	if (overlay_tour_shows(overlay) &&
 	    rect_holds(tour_player_view_rect(&overlay->tour, &screen), x_px, y_px))
 		return true;
-	if (on_tools(overlay, &screen, x_px, y_px))
+	if (on_tools(overlay, &screen, x_px, y_px) || on_choice(overlay, &screen, x_px, y_px))
 		return true;
 	return overlay->card.part >= 0 && rect_holds(card_view_rect(&screen), x_px, y_px);
 }
@@ -690,6 +709,13 @@ static bool update_tools(struct overlay *overlay, const struct screen *screen, i
 				 &overlay->callouts.dirty);
 }
 
+static bool update_choice(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
+{
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
+
+	return choice_view_update(&overlay->choice, screen, &obstacles, step_ms);
+}
+
 /* Callouts come after all that they must not touch. */
 static bool update_callouts(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
 {
@@ -732,6 +758,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 	moving |= languages_view_update(&overlay->languages_view, &screen, &overlay->languages,
 					step_ms);
 	moving |= update_tools(overlay, &screen, step_ms);
+	moving |= update_choice(overlay, &screen, step_ms);
 	moving |= update_callouts(overlay, &screen, step_ms);
 	moving |= search_view_update(&overlay->search, &screen, parts, pictures, step_ms);
 	moving |= update_page(overlay, &screen, step_ms);
@@ -745,6 +772,7 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lis
 
 	callouts_view_layers(&overlay->callouts, &layers);
 	tools_view_layers(&overlay->tools, &screen, &layers);
+	choice_view_layers(&overlay->choice, &layers);
 	help_view_layers(&overlay->help, &screen, overlay->parts.count > 0, &layers);
 	invitation_view_layers(&overlay->invitation, &screen, &layers);
 	tour_player_view_layers(&overlay->tour, &screen, &layers);

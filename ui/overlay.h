@@ -150,6 +150,11 @@ unsigned overlay_tools_offered(const struct overlay *overlay);
 /* Sets the state of the tools, each frame; copied. */
 void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *state);
 
+/* Sets the states of the site that can be chosen, in the current language, and which one is;
+ * copied, and may be the same in each frame. Fewer than two: there is nothing to choose. */
+void overlay_show_choice(struct overlay *overlay, const char *const *titles, uint32_t count,
+			 uint32_t chosen);
+
 /* Tells that a picture that was asked for has arrived. */
 void overlay_picture_arrived(struct overlay *overlay, const char *name);
 

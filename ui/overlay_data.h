@@ -9,6 +9,8 @@ enum {
 	OVERLAY_LANGUAGES_MAX = 64,
 	OVERLAY_TOURS_MAX = 8,
 	OVERLAY_TOOL_COUNT = 2,
+	OVERLAY_CHOICES_MAX = 8,
+	OVERLAY_CHOICE_BYTES = 128, /* of a title, with its end */
 };
 
 struct overlay_part {

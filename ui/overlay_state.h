@@ -5,6 +5,7 @@
 #include "ui/bar_view.h"
 #include "ui/callouts_view.h"
 #include "ui/card_view.h"
+#include "ui/choice_view.h"
 #include "ui/gallery_view.h"
 #include "ui/help_view.h"
 #include "ui/invitation_view.h"
@@ -32,6 +33,7 @@ struct overlay {
 	struct bar_view bar;
 	struct callouts_view callouts;
 	struct card_view card;
+	struct choice_view choice;
 	struct gallery_view gallery;
 	struct help_view help;
 	struct invitation_view invitation;

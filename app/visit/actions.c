@@ -256,6 +256,14 @@ static void do_press_tool(const struct actions *actions, const struct overlay_ac
 		    action->kind == OVERLAY_LIGHT ? OVERLAY_TOOL_LIGHT : OVERLAY_TOOL_SECTION);
 }
 
+static void do_choose_layer(const struct actions *actions, const struct overlay_action *action)
+{
+	if (!actions->shown->scene)
+		return;
+	scene_choose_layer(actions->shown->scene, action->choice);
+	log_debug("app", "layer %u", action->choice);
+}
+
 static void do_listen(const struct actions *actions, const struct overlay_action *action)
 {
 	(void)action;
@@ -326,6 +334,7 @@ static const struct {
 	[OVERLAY_REACH] = { do_change_comfort, 0 },
 	[OVERLAY_LIGHT] = { do_press_tool, 0 },
 	[OVERLAY_SECTION] = { do_press_tool, 0 },
+	[OVERLAY_CHOICE] = { do_choose_layer, 0 },
 	[OVERLAY_KEY] = { do_press_key, 0 },
 	[OVERLAY_FOUND] = { do_show_found, STEP | HALTS_TOUR },
 	[OVERLAY_PICTURE] = { do_show_picture, 0 },
