@@ -175,12 +175,14 @@ $(BUILD)/obj/%.o: %.c | $(BUILD)/.deps
 # Only files that print the version depend on it, so that a commit does not rebuild the tree.
 $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGOPURA_VERSION='"$(VERSION)"'
 # Loops over arrays of numbers, which the compiler turns into vector instructions.
-VECTORS := pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
+VECTORS := geometry/substance pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
 $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
 # Kiosks decode patches all the time: with these loops unrolled, a fifth faster.
 ifeq ($(SAN)$(FUZZER),)
 $(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o $(BUILD)/obj/format/precision.o: OPT := -O3 -g
 endif
+# This one is also GLSL, whose constants are of single precision.
+$(BUILD)/obj/geometry/substance.o: CFLAGS += -fsingle-precision-constant
 $(TEST_OBJECTS): | $(BUILD)/.test-deps
 $(BUILD)/obj/tests/%.o: CFLAGS += -DTEST_LOCALE='"$(BUILD)/locale"'
 # The tests' own sources are compiled and linked as fast as possible; the product's sources are as in the field.

@@ -163,6 +163,7 @@ static struct master_options master_options(const struct content *content,
 			      .jobs = options->jobs,
 			      .shard = options->shard },
 		.material_colours = content->colours == CONTENT_COLOURS_PROCEDURAL,
+		.substance = content->substance,
 	};
 }
 

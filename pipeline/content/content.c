@@ -79,10 +79,16 @@ static bool set_colours(const struct setting *setting, void *target, const char 
 {
 	struct content *content = target;
 
+	const enum substance_kind substance = substance_named(value);
+
 	(void)setting;
 	content->colours = strcasecmp(value, "scan") == 0         ? CONTENT_COLOURS_SCAN
 			   : strcasecmp(value, "procedural") == 0 ? CONTENT_COLOURS_PROCEDURAL
 								  : CONTENT_COLOURS_ONE;
+	if (substance != SUBSTANCE_NONE && substance != SUBSTANCE_KINDS) {
+		content->colours = CONTENT_COLOURS_PROCEDURAL;
+		content->substance = substance;
+	}
 	if (content->colours != CONTENT_COLOURS_ONE)
 		return true;
 	content->import.override_colour = true;
@@ -274,7 +280,9 @@ static const struct setting settings[] = {
 		set_scans),
 	SETTING("model", "up", "z, y or x: the axis that points up in the scans", set_up),
 	SETTING("model", "unit", "m, cm, mm, in, or metres in one unit of the scans", set_unit),
-	SETTING("model", "colours", "scan, procedural, or one colour as #rrggbb", set_colours),
+	SETTING("model", "colours",
+		"scan, procedural, marble, wood, sandstone, laterite, or one colour as #rrggbb",
+		set_colours),
 	SETTING("model", "lit", "yes or no", set_lit),
 	NUMBERS("model", "sun", "three numbers x y z, pointing to the sun", set_sun, sun, -FLT_MAX,
 		FLT_MAX),

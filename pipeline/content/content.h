@@ -10,6 +10,7 @@
 #include "base/settings.h"
 #include "format/hash.h"
 #include "format/tile.h"
+#include "geometry/substance.h"
 #include "pipeline/import/import.h"
 
 enum {
@@ -21,7 +22,7 @@ enum {
 
 enum content_colours {
 	CONTENT_COLOURS_SCAN,
-	CONTENT_COLOURS_PROCEDURAL, /* the material function of the demo temple */
+	CONTENT_COLOURS_PROCEDURAL, /* a material: substance */
 	CONTENT_COLOURS_ONE,        /* one colour for all: import.default_colour */
 };
 
@@ -46,6 +47,7 @@ struct content {
 	uint32_t scan_count;                             /* at least 1 */
 	struct import_options import;
 	enum content_colours colours;
+	enum substance_kind substance; /* SUBSTANCE_NONE: the weathered stone of the demo temple */
 	enum content_lit lit;
 	float sun[3]; /* unit vector towards the light */
 	uint8_t background[3];

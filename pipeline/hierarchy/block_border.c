@@ -31,7 +31,10 @@ void block_look_apply(const struct block_look *look, const struct lattice *latti
 		lattice_metres(at_m, lattice, vertex->position);
 		for (int i = 0; i < 3; i++)
 			at[i] = (float)at_m[i];
-		material_colour(rgb, at, vertex->normal, look->footprint_m);
+		if (look->substance == SUBSTANCE_NONE)
+			material_colour(rgb, at, vertex->normal, look->footprint_m);
+		else
+			substance_colour(rgb, look->substance, at, look->footprint_m);
 		for (int i = 0; i < 3; i++)
 			vertex->colour[i] = (uint8_t)(255.0f * (rgb[i] < 0.0f   ? 0.0f
 								: rgb[i] > 1.0f ? 1.0f

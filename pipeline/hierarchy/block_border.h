@@ -4,6 +4,7 @@
 #ifndef GOPURA_PIPELINE_HIERARCHY_BLOCK_BORDER_H
 #define GOPURA_PIPELINE_HIERARCHY_BLOCK_BORDER_H
 
+#include "geometry/substance.h"
 #include "pipeline/hierarchy/block_split.h"
 #include "pipeline/hierarchy/lattice_mesh.h"
 
@@ -11,8 +12,10 @@
 struct block_look {
 	struct exposure *exposure;
 	uint8_t plain_colour[3]; /* of scans without colours */
-	bool is_stone;           /* use pipeline/material/material.h, not the scan's colours */
-	float footprint_m;       /* length of an edge, for the material */
+	bool is_stone;           /* use a material, not the scan's colours */
+	enum substance_kind
+		substance; /* which; SUBSTANCE_NONE: that of pipeline/material/material.h */
+	float footprint_m; /* length of an edge, for the material */
 };
 
 /* Sets visibility and, for stone, colour of vertices from place and normal. */

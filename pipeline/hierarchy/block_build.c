@@ -317,10 +317,12 @@ static int run(struct build *build)
 
 int block_build(struct block_build *out, const char *folder, const struct mesh *mesh,
 		const struct multires_options *options, bool is_stone,
-		const struct multires_sink *sink)
+		enum substance_kind substance, const struct multires_sink *sink)
 {
 	struct build build = {
-		.site = { .look = { .plain_colour = { 184, 172, 150 }, .is_stone = is_stone },
+		.site = { .look = { .plain_colour = { 184, 172, 150 },
+				    .is_stone = is_stone,
+				    .substance = substance },
 			  .options = *options,
 			  .folder = folder },
 	};

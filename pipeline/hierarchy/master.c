@@ -34,7 +34,7 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 	buffer_put_u32(&text, options->multires.top_triangles);
 	buffer_put_u32(&text, options->multires.block_triangles);
 	buffer_put_f64(&text, options->multires.step_max_m);
-	buffer_put_u8(&text, options->material_colours);
+	buffer_put_u8(&text, options->material_colours ? (uint8_t)(1 + options->substance) : 0);
 	if (options->multires.simplifier != MULTIRES_QUADRIC)
 		buffer_put_u32(&text, options->multires.simplifier);
 	stamp = hash_of(buffer_bytes(&text));
@@ -182,7 +182,7 @@ static int build_files(const char *folder, const char *groups, const char *block
 	if (writer.fd < 0)
 		return writer.fd;
 	rc = block_build(&build, blocks, mesh, &options->multires, options->material_colours,
-			 &sink);
+			 options->substance, &sink);
 	if (rc == 0 && fsync(writer.fd) < 0)
 		rc = -errno;
 	rc = bytes_end_file(writer.fd, temporary, groups, rc);

@@ -9,6 +9,7 @@
 #include "format/hash.h"
 #include "format/hierarchy.h"
 #include "format/root_page.h"
+#include "geometry/substance.h"
 #include "pipeline/hierarchy/multires.h"
 #include "pipeline/import/mesh.h"
 
@@ -26,7 +27,9 @@ struct master {
 
 struct master_options {
 	struct multires_options multires;
-	bool material_colours; /* use pipeline/material/material.h, not the scan's colours */
+	bool material_colours; /* use a material, not the scan's colours */
+	enum substance_kind
+		substance; /* which; SUBSTANCE_NONE: that of pipeline/material/material.h */
 };
 
 /* The result of a build, for people. */

@@ -1,7 +1,7 @@
 /* The colour of weathered temple stone at a place: sandstone, laterite in the lower courses,
  * joints, lichen, dark runs of rain. It is one function in two languages, so that a picture can be
- * textured down to a centimetre from geometry alone. All randomness comes from integer hashes that
- * 32-bit floats represent exactly, so both agree (a test compares them). No state, no I/O. */
+ * textured down to a centimetre from geometry alone. Its noise is geometry/noise.h; a test compares
+ * both languages. No state, no I/O. */
 #ifndef GOPURA_PIPELINE_MATERIAL_MATERIAL_H
 #define GOPURA_PIPELINE_MATERIAL_MATERIAL_H
 
@@ -37,7 +37,7 @@ void material_paints(float *const rgb[3], const struct material_places *places,
 		     const struct material_blocks *blocks, const float *inch, const float *grain);
 
 /* GLSL ES 1.00 source of vec3 material_colour(vec3 position_m, vec3 normal, float footprint_m). It
- * needs "precision highp float" where it is included. */
+ * needs noise_glsl before it. */
 extern const char material_glsl[];
 
 #endif

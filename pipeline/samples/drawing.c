@@ -5,11 +5,13 @@
 #include <errno.h>
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/log.h"
 #include "geometry/light.h"
+#include "geometry/noise.h"
 #include "pipeline/material/material.h"
 #include "pipeline/samples/recency.h"
 #include "render/display/gl.h"
@@ -61,6 +63,11 @@ static const char material[] =
 	"vec3 base() {\n"
 	"	return material_colour(v_at, normalize(v_normal), distance(v_at, eye) * px_radians);\n"
 	"}\n";
+/* Of substance_glsl; the name of the substance is put in. */
+static const char substance_base[] =
+	"vec3 base() {\n"
+	"	return %s_colour(v_at.x, v_at.y, v_at.z, distance(v_at, eye) * px_radians);\n"
+	"}\n";
 static const char no_light[] = "float shade() { return 1.0; }\n";
 static const char sun_light[] =
 	"float shade() { return light(normalize(v_normal), v_colour.a, sun); }\n";
@@ -73,20 +80,29 @@ static const char fragment_main[] =
 
 static int build_program(struct drawing *drawing, const struct drawing_options *options)
 {
-	const char *colour = options->procedural      ? material
+	const bool is_substance = options->procedural && options->substance != SUBSTANCE_NONE;
+	char of_substance[sizeof(substance_base) + 32];
+	const char *colour = is_substance             ? of_substance
+			     : options->procedural    ? material
 			     : drawing->texture_count ? image_colour
 						      : scan_colour;
 	const char *const vertex[] = { vertex_text, NULL };
 	const char *const fragment[] = { fragment_head,
-					 options->procedural ? material_glsl : "",
+					 options->procedural ? noise_glsl : "",
+					 is_substance          ? substance_glsl
+					 : options->procedural ? material_glsl
+							       : "",
 					 options->lit ? light_glsl : "",
 					 colour,
 					 options->lit ? sun_light : no_light,
 					 fragment_main,
 					 NULL };
 	const struct gl_program_source source = { "drawing", vertex, fragment, attributes };
-	int rc = gl_program_build(&drawing->program, &source);
+	int rc;
 
+	snprintf(of_substance, sizeof(of_substance), substance_base,
+		 substance_names[options->substance]);
+	rc = gl_program_build(&drawing->program, &source);
 	if (rc < 0)
 		return rc;
 	drawing->matrix_at = glGetUniformLocation(drawing->program, "matrix");

@@ -11,6 +11,7 @@
 
 #include <stdbool.h>
 
+#include "geometry/substance.h"
 #include "pipeline/import/mesh.h"
 #include "pipeline/samples/sight.h"
 
@@ -19,7 +20,9 @@ enum { DRAWING_BACK = 254 };
 struct drawing_options {
 	bool lit;
 	float sun[3];    /* unit vector */
-	bool procedural; /* colours from pipeline/material/material.h */
+	bool procedural; /* colours from a material */
+	/* which; SUBSTANCE_NONE: that of pipeline/material/material.h */
+	enum substance_kind substance;
 };
 
 struct drawing;

@@ -173,6 +173,7 @@ static int draw_one(const struct job *job, const struct gl_target *target, uint3
 		rc = paint(&model, model);
 	else
 		options.procedural = job->content->colours == CONTENT_COLOURS_PROCEDURAL;
+	options.substance = job->content->substance;
 	buffer_init(&jpeg, JPEG_BYTES_MAX);
 	picture.rgba = malloc((size_t)picture.width * picture.height * 4);
 	if (rc == 0 && !picture.rgba)

@@ -191,7 +191,8 @@ static int set_up(struct easel *easel, struct scans *scans, struct diagnostics *
 	const struct content *content = scans_content(scans);
 	const struct reference_options *options = easel->options;
 	struct drawing_options drawing = { .procedural =
-						   content->colours == CONTENT_COLOURS_PROCEDURAL };
+						   content->colours == CONTENT_COLOURS_PROCEDURAL,
+					   .substance = content->substance };
 	size_t pixels = (size_t)options->width_px * (size_t)options->height_px;
 	int side = options->width_px > options->height_px ? options->width_px : options->height_px;
 	const struct mesh *mesh;

@@ -386,7 +386,15 @@ static vector_clones void light_round(struct resolve *r, uint32_t count)
 	}
 }
 
-static void paint(struct resolve *r, uint32_t count)
+static void paint_substance(struct resolve *r, uint32_t count)
+{
+	float *const rgb[3] = { r->rgb[0], r->rgb[1], r->rgb[2] };
+	const float *const at[3] = { r->middle[0], r->middle[1], r->middle[2] };
+
+	substance_colours(rgb, r->drawn.substance, at, r->footprint_m, count);
+}
+
+static void paint_stone(struct resolve *r, uint32_t count)
 {
 	const struct material_places places = {
 		count,       r->middle[0], r->middle[1], r->middle[2],
@@ -400,6 +408,14 @@ static void paint(struct resolve *r, uint32_t count)
 		find_detail(r, n, count);
 	find_blocks(r, count);
 	material_paints(rgb, &places, &blocks, r->detail[0], r->detail[1]);
+}
+
+static void paint(struct resolve *r, uint32_t count)
+{
+	if (r->drawn.substance != SUBSTANCE_NONE)
+		paint_substance(r, count);
+	else
+		paint_stone(r, count);
 	light_round(r, count);
 	for (int c = 0; c < 3; c++)
 		for (uint32_t i = 0; i < count; i++)

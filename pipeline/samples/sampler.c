@@ -114,7 +114,7 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 	if (master)
 		buffer_put(&text, master->stamp.bytes, HASH_BYTES);
 	buffer_put_u8(&text, drawing->lit);
-	buffer_put_u8(&text, drawing->procedural);
+	buffer_put_u8(&text, drawing->procedural ? (uint8_t)(1 + drawing->substance) : 0);
 	for (int i = 0; i < 3; i++) {
 		buffer_put_f32(&text, drawing->lit ? drawing->sun[i] : 0);
 		buffer_put_f32(&text, grid->origin_m[i]);
@@ -463,6 +463,7 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 			"faces of scans with pictures do not have; write gain");
 	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
 	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
+	sampling->drawing.substance = content->substance;
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));
 	sampler_grid(&sampling->grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);

@@ -183,6 +183,7 @@ static int work(void *user, uint32_t piece)
 	(void)piece;
 	options.drawn.lit = job->lit;
 	options.drawn.procedural = job->content->colours == CONTENT_COLOURS_PROCEDURAL;
+	options.drawn.substance = job->content->substance;
 	memcpy(options.drawn.sun, job->content->sun, sizeof(options.drawn.sun));
 	options.level_count = level_count;
 	for (; options.level_count > TRIAL_LEVELS_MAX; options.level_count--)

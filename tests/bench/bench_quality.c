@@ -227,6 +227,7 @@ static void take_scan(const char *folder)
 	check(scans_get_mesh(scans, &mesh, &diagnostics), folder);
 	drawn.lit = content_is_lit(&content, false);
 	drawn.procedural = content.colours == CONTENT_COLOURS_PROCEDURAL;
+	drawn.substance = content.substance;
 	memcpy(drawn.sun, content.sun, sizeof(drawn.sun));
 	check(chunks_create(&stand.model, mesh, content.import.default_colour), "the model");
 	check(sight_create(&stand.sight, stand.model), "sight");

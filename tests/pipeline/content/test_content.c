@@ -74,6 +74,7 @@ static void every_key_is_read(void **state)
 	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(strcmp(content.name, "Banteay of the Test") == 0 && content.scan_count == 2);
 	CHECK(content.import.up == IMPORT_Y_UP && content.import.metres_per_unit == 0.001);
+	CHECK(content.substance == SUBSTANCE_NONE);
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
 	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
 	CHECK(content.background[0] == 255 && content.has_start);
@@ -87,6 +88,21 @@ static void every_key_is_read(void **state)
 	CHECK(content.block_triangles == 2000 && content.lattice_mm == 0.5);
 	CHECK(content.publish_share == 0.5 && content.language_count == 4);
 	CHECK(strcmp(content.languages[3], "pt-BR") == 0);
+	content_release(&content);
+	remove_folder(folder);
+}
+
+static void takes_a_substance_for_the_colours(void **state)
+{
+	struct content content;
+	struct diagnostics diagnostics = { 0 };
+	char folder[256];
+	(void)state;
+
+	make_folder(folder, "[model]\nscans = tower.ply\ncolours = laterite\n");
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	CHECK(content.colours == CONTENT_COLOURS_PROCEDURAL &&
+	      content.substance == SUBSTANCE_LATERITE);
 	content_release(&content);
 	remove_folder(folder);
 }
@@ -429,6 +445,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(defaults_need_only_a_scan),
 		cmocka_unit_test(every_key_is_read),
+		cmocka_unit_test(takes_a_substance_for_the_colours),
 		cmocka_unit_test(faults_name_file_line_and_cure),
 		cmocka_unit_test(tells_all_faults_at_once),
 		cmocka_unit_test(says_what_is_no_content_folder),

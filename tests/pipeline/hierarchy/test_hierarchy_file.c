@@ -314,7 +314,7 @@ static struct multires_stats model_build(struct model *model, struct mesh mesh,
 	memset(model, 0, sizeof(*model));
 	CHECK(on_lattice(&lattice_mesh, &counts, &mesh) == 0);
 	find_open_places(model, &lattice_mesh);
-	CHECK(block_build(&build, folder.path, &mesh, options, false, &sink) == 0);
+	CHECK(block_build(&build, folder.path, &mesh, options, false, SUBSTANCE_NONE, &sink) == 0);
 	model->hierarchy = build.hierarchy;
 	CHECK(hierarchy_check(&model->hierarchy) == 0);
 	CHECK(objects.count == model->hierarchy.group_count);
@@ -823,7 +823,7 @@ static int build_objects(struct objects *objects, const struct folder *folder, u
 	options.jobs = jobs;
 	options.simplifier = simplifier;
 	options.block_triangles = block_triangles;
-	rc = block_build(&build, folder->path, &mesh, &options, true, &sink);
+	rc = block_build(&build, folder->path, &mesh, &options, true, SUBSTANCE_NONE, &sink);
 	block_build_finish(&build);
 	mesh_finish(&mesh);
 	return rc;
@@ -955,13 +955,16 @@ static void refuses_what_is_no_mesh(void **state)
 
 	(void)state;
 	mesh.positions[2][1] = NAN;
-	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, SUBSTANCE_NONE,
+			  &sink) == -EINVAL);
 	mesh.positions[2][1] = was;
 	mesh.triangles[5][1] = mesh.vertex_count;
-	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, SUBSTANCE_NONE,
+			  &sink) == -EINVAL);
 	mesh.triangles[5][1] = index;
 	mesh.triangle_count = 0;
-	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, &sink) == -EINVAL);
+	CHECK(block_build(&build, folder.path, &mesh, &small_blocks, false, SUBSTANCE_NONE,
+			  &sink) == -EINVAL);
 	CHECK(!build.hierarchy.groups && objects.count == 0);
 	mesh_finish(&mesh);
 	folder_remove(&folder);

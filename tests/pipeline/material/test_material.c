@@ -1,4 +1,4 @@
-/* The stone function in C against its GLSL twin on whatever GLES2 there is here. */
+/* The stone and the substances in C against their GLSL twins on whatever GLES2 there is here. */
 #include "pipeline/material/material.h"
 
 #include <math.h>
@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "geometry/noise.h"
+#include "geometry/substance.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 #include "tests/check.h"
@@ -36,7 +38,7 @@ static const char *const vertex[] = {
 };
 static const char *const fragment[] = {
 	"precision highp float;\nuniform vec3 origin, right, up, normal;\nuniform float footprint;\n",
-	material_glsl,
+	noise_glsl, material_glsl,
 	"void main() {\n"
 	"	vec2 at = floor(gl_FragCoord.xy);\n"
 	"	vec3 p = (origin + at.x * right) + at.y * up;\n"
@@ -61,18 +63,23 @@ static void draw(GLuint program, const struct square *s)
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-static void material_at(const struct square *s, int x, int y, float rgb[3])
+/* substance: SUBSTANCE_NONE is the weathered stone. */
+static void material_at(const struct square *s, enum substance_kind substance, int x, int y,
+			float rgb[3])
 {
 	float p[3];
 
 	for (int k = 0; k < 3; k++)
 		p[k] = (s->origin[k] + (float)x * s->right[k]) + (float)y * s->up[k];
-	material_colour(rgb, p, s->normal, s->footprint_m);
+	if (substance == SUBSTANCE_NONE)
+		material_colour(rgb, p, s->normal, s->footprint_m);
+	else
+		substance_colour(rgb, substance, p, s->footprint_m);
 }
 
 /* Of the pixels that differ by more than 2 of 255: rounding may move a joint by a pixel, no more.
  */
-static int differing(const struct square *s, const uint8_t *rgba)
+static int differing(const struct square *s, enum substance_kind substance, const uint8_t *rgba)
 {
 	int count = 0;
 
@@ -80,7 +87,7 @@ static int differing(const struct square *s, const uint8_t *rgba)
 		for (int x = 0; x < SIDE; x++) {
 			const uint8_t *pixel = rgba + 4 * ((SIDE - 1 - y) * SIDE + x);
 			float rgb[3], worst = 0;
-			material_at(s, x, y, rgb);
+			material_at(s, substance, x, y, rgb);
 			for (int k = 0; k < 3; k++)
 				worst = fmaxf(worst, fabsf(fminf(fmaxf(rgb[k], 0), 1) * 255 -
 							   (float)pixel[k]));
@@ -90,30 +97,62 @@ static int differing(const struct square *s, const uint8_t *rgba)
 	return count;
 }
 
-static void agrees_with_its_twin(void **state)
+static void compare(const char *const *fragments, enum substance_kind substance,
+		    size_t square_count)
 {
-	const struct gl_program_source source = { "stone", vertex, fragment, corner };
+	const struct gl_program_source source = { "stone", vertex, fragments, corner };
 	uint8_t *rgba = malloc(4 * SIDE * SIDE);
-	struct headless *headless;
 	struct gl_target target;
 	GLuint program;
 
-	(void)state;
 	CHECK(rgba != NULL);
-	CHECK(headless_create(&headless) == 0);
 	CHECK(gl_program_build(&program, &source) == 0);
 	CHECK(gl_target_create(&target, SIDE, SIDE) == 0);
-	for (size_t i = 0; i < ARRAY_COUNT(squares); i++) {
+	for (size_t i = 0; i < square_count; i++) {
 		draw(program, &squares[i]);
 		CHECK(gl_target_read(&target, rgba) == 0);
-		int count = differing(&squares[i], rgba);
+		int count = differing(&squares[i], substance, rgba);
 		if (count > SIDE * SIDE / 100)
-			fail_msg("square %zu: %d of %d pixels differ", i, count, SIDE * SIDE);
+			fail_msg("%s, square %zu: %d of %d pixels differ",
+				 substance_names[substance], i, count, SIDE * SIDE);
 	}
 	gl_target_destroy(&target);
 	glDeleteProgram(program);
-	headless_destroy(headless);
 	free(rgba);
+}
+
+static void agrees_with_its_twin(void **state)
+{
+	struct headless *headless;
+	(void)state;
+
+	CHECK(headless_create(&headless) == 0);
+	compare(fragment, SUBSTANCE_NONE, ARRAY_COUNT(squares));
+	headless_destroy(headless);
+}
+
+/* The last square is too far away for their finest detail. */
+static void substances_agree_with_their_twins(void **state)
+{
+	struct headless *headless;
+	(void)state;
+
+	CHECK(headless_create(&headless) == 0);
+	for (int kind = SUBSTANCE_NONE + 1; kind < SUBSTANCE_KINDS; kind++) {
+		char body[400];
+		const char *const fragments[] = { fragment[0], noise_glsl, substance_glsl, body,
+						  NULL };
+
+		snprintf(body, sizeof(body),
+			 "void main() {\n"
+			 "	vec2 at = floor(gl_FragCoord.xy);\n"
+			 "	vec3 p = (origin + at.x * right) + at.y * up;\n"
+			 "	gl_FragColor = vec4(%s_colour(p.x, p.y, p.z, footprint), 1.0);\n"
+			 "}\n",
+			 substance_names[kind]);
+		compare(fragments, (enum substance_kind)kind, ARRAY_COUNT(squares) - 1);
+	}
+	headless_destroy(headless);
 }
 
 /* With every number of places up to one more than vectors are wide. */
@@ -181,6 +220,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(agrees_with_its_twin),
+		cmocka_unit_test(substances_agree_with_their_twins),
 		cmocka_unit_test(is_the_same_for_many_places_at_once),
 		cmocka_unit_test(is_a_colour_with_detail_down_to_a_centimetre),
 	};
