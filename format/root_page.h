@@ -68,6 +68,12 @@ static inline uint32_t root_page_plain(const struct root_page *root, uint32_t ch
 	return child_count > more ? child_count - more : 0;
 }
 
+/* Returns the number of the scenery, if has_scenery is set. */
+static inline uint32_t root_page_scenery(const struct root_page *root, uint32_t child_count)
+{
+	return root_page_plain(root, child_count) + root->has_stream;
+}
+
 /* Appends the payload, for page.payload. Failures are out->error. */
 void root_page_encode(struct buffer *out, const struct root_page *root);
 /* Returns -EBADMSG if the payload is truncated, has bytes left over, or holds numbers that are not

@@ -371,7 +371,8 @@ void scene_list_wants(struct scene *scene)
 		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
 	if (scene->root.has_scenery && !scene->scenery.is_here)
-		want_child_of_root(scene, OBJECT_SCENERY, scene->root_child_count - 1,
+		want_child_of_root(scene, OBJECT_SCENERY,
+				   root_page_scenery(&scene->root, scene->root_child_count),
 				   FIRST_PRIORITY - 1);
 	if (scene->has_hierarchy)
 		want_groups(scene);

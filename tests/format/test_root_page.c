@@ -89,7 +89,7 @@ static void says_whether_there_is_a_stream_or_scenery(void **state)
 	buffer.data[buffer.size - 1] = 7; /* an octree too */
 	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
 	CHECK(back.has_stream == 1 && back.has_scenery == 1 && back.has_solid == 1);
-	CHECK(root_page_plain(&back, 7) == 4);
+	CHECK(root_page_plain(&back, 7) == 4 && root_page_scenery(&back, 7) == 5);
 	buffer.data[buffer.size - 1] = 8;
 	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
 	buffer.data[buffer.size - 1] = 0;
