@@ -40,14 +40,18 @@ def sign_in(port, name="ana"):
 class Browser:
     """A connection. Texts are kept until they are asked for; pictures are told to have arrived at once."""
 
-    def __init__(self, port, origin=None, host=None, width=WIDTH, height=HEIGHT, name="ana", cookie=None, token=None):
+    def __init__(self, port, origin=None, host=None, width=WIDTH, height=HEIGHT, name="ana", cookie=None, token=None,
+                 tls=None):
         self.port, self.width, self.height = port, width, height
         self.socket = socket.create_connection(("127.0.0.1", port), timeout=120)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if tls:
+            self.socket = tls.wrap_socket(self.socket)
         self.data, self.texts, self.view = b"", [], 0
         host = host or f"127.0.0.1:{port}"
-        own = sign_in(port, name)
-        cookie, token = own[0] if cookie is None else cookie, own[1] if token is None else token
+        if cookie is None or token is None:
+            own = sign_in(port, name)
+            cookie, token = own[0] if cookie is None else cookie, own[1] if token is None else token
         key = base64.b64encode(os.urandom(16)).decode()
         lines = [f"GET /socket?token={token} HTTP/1.1", f"Host: {host}", f"Cookie: theme=dark; {cookie}", "Upgrade: websocket", "Connection: Upgrade",
                  f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
