@@ -56,96 +56,102 @@ void solid_find(const struct solid *solid, const int32_t place[3], struct solid_
 
 /* ---- the coder, both directions */
 
+/* A cell of a level beside a node: SIDE_FREE, SIDE_FULL, or the index of the node it is. */
+#define SIDE_FREE UINT32_MAX
+#define SIDE_FULL (UINT32_MAX - 1)
+
+struct spot {
+	uint32_t id;              /* 8 times the parent's node, and the child's number there */
+	uint32_t low[3], high[3]; /* the cells of a node's own size beside it, along each axis */
+};
+
 struct walk {
 	struct solid *solid;
 	struct symbol_coder coder;
 	struct symbol_model (*models)[SIDES][SIDES]; /* owned; [0]: cells that may be divided */
-	uint16_t (*places)[3];                       /* owned; of each node, on its own level */
-	uint32_t known; /* nodes that have a place: those before, and their children */
+	struct spot *spots;                          /* owned; of each node */
+	uint32_t known; /* nodes that have a spot: those before, and their children */
 };
 
-/* Finds a cell on a level that both sides know; the root is level 0. Writes the node of one that is
- * divided. What is outside of the root is free. */
-static enum solid_state look(const struct walk *walk, uint32_t level, const int32_t place[3],
-			     uint32_t *node)
+/* Returns what a child is that both sides know. */
+static uint32_t side_of(const struct walk *walk, uint32_t node, uint32_t child)
 {
-	*node = 0;
-	for (int axis = 0; axis < 3; axis++)
-		if (place[axis] < 0 || place[axis] >> level != 0)
-			return SOLID_FREE;
-	for (uint32_t bit = level; bit-- > 0;) {
-		const struct solid_node *n = &walk->solid->nodes[*node];
-		const uint32_t child = (uint32_t)(place[0] >> bit & 1) |
-				       (uint32_t)(place[1] >> bit & 1) << 1 |
-				       (uint32_t)(place[2] >> bit & 1) << 2;
-		const enum solid_state state = solid_child_state(n, child);
+	const struct solid_node *n = &walk->solid->nodes[node];
+	const enum solid_state state = solid_child_state(n, child);
 
-		if (state != SOLID_DIVIDED)
-			return state;
-		*node = solid_child_node(n, child);
-	}
-	return SOLID_DIVIDED;
+	return state == SOLID_FREE   ? SIDE_FREE
+	       : state == SOLID_FULL ? SIDE_FULL
+				     : solid_child_node(n, child);
 }
 
-/* The six cells around a node, of its own size. */
-struct around {
-	enum solid_state low[3], high[3];
-	uint32_t low_node[3];
-};
-
-static void look_around(const struct walk *walk, uint32_t at, uint32_t level, struct around *out)
+/* Looks around a node: at its siblings, and at the children of the cells around its parent. What is
+ * outside of the root is free. */
+static void look_around(const struct walk *walk, uint32_t at)
 {
-	for (int axis = 0; axis < 3; axis++) {
-		int32_t place[3] = { walk->places[at][0], walk->places[at][1],
-				     walk->places[at][2] };
-		uint32_t node;
+	struct spot *spot = &walk->spots[at];
+	const struct spot *parent = &walk->spots[spot->id / SOLID_CHILDREN];
+	const uint32_t child = spot->id % SOLID_CHILDREN;
 
-		place[axis]--;
-		out->low[axis] = look(walk, level, place, &out->low_node[axis]);
-		place[axis] += 2;
-		out->high[axis] = look(walk, level, place, &node);
+	for (uint32_t axis = 0; axis < 3; axis++) {
+		const bool is_high = child >> axis & 1;
+		const uint32_t beside = child ^ 1u << axis;
+		uint32_t outer, inner;
+
+		if (at == 0) {
+			spot->low[axis] = spot->high[axis] = SIDE_FREE;
+			continue;
+		}
+		outer = is_high ? parent->high[axis] : parent->low[axis];
+		if (outer < SIDE_FULL)
+			outer = side_of(walk, outer, beside);
+		inner = side_of(walk, spot->id / SOLID_CHILDREN, beside);
+		spot->low[axis] = is_high ? inner : outer;
+		spot->high[axis] = is_high ? outer : inner;
 	}
 }
 
-static void tally(uint32_t *sides, enum solid_state state)
+static void tally(uint32_t *sides, uint32_t side)
+{
+	*sides += side == SIDE_FREE ? 1 : side == SIDE_FULL ? 4 : 0;
+}
+
+static void tally_state(uint32_t *sides, uint32_t state)
 {
 	*sides += state == SOLID_FREE ? 1 : state == SOLID_FULL ? 4 : 0;
 }
 
-static struct symbol_model *model_of(const struct walk *walk, const struct around *around,
+static struct symbol_model *model_of(const struct walk *walk, const struct spot *spot,
 				     uint32_t states, uint32_t child, bool last)
 {
 	uint32_t low = 0, high = 0;
 
 	for (uint32_t axis = 0; axis < 3; axis++) {
-		const uint32_t beside = child ^ 1u << axis;
+		const uint32_t beside = child ^ 1u << axis, before = spot->low[axis];
 
 		if (child >> axis & 1) {
-			tally(&low, (enum solid_state)(states >> 2 * beside & 3));
-			tally(&high, around->high[axis]);
-		} else if (around->low[axis] == SOLID_DIVIDED) {
-			tally(&low, solid_child_state(&walk->solid->nodes[around->low_node[axis]],
-						      beside));
+			tally_state(&low, states >> 2 * beside & 3);
+			tally(&high, spot->high[axis]);
+		} else if (before < SIDE_FULL) {
+			tally_state(&low, solid_child_state(&walk->solid->nodes[before], beside));
 		} else {
-			tally(&low, around->low[axis]);
+			tally(&low, before);
 		}
 	}
 	return &walk->models[last][low][high];
 }
 
-/* Codes a node's states and gives its divided children their places. Returns -EBADMSG if they are
+/* Codes a node's states and gives its divided children their spots. Returns -EBADMSG if they are
  * not those of a node. */
 static int code_node(struct walk *walk, uint32_t at, uint32_t level)
 {
 	struct solid_node *node = &walk->solid->nodes[at];
 	const bool last = level + 1 == walk->solid->depth;
 	uint32_t states = 0, symbols = last ? 2 : 3;
-	struct around around;
 
-	look_around(walk, at, level, &around);
+	look_around(walk, at);
 	node->first = walk->known;
 	for (uint32_t child = 0; child < SOLID_CHILDREN; child++) {
-		struct symbol_model *model = model_of(walk, &around, states, child, last);
+		struct symbol_model *model = model_of(walk, &walk->spots[at], states, child, last);
 		const uint32_t state =
 			symbol_code(&walk->coder, model, symbols, node->states >> 2 * child & 3);
 
@@ -154,9 +160,7 @@ static int code_node(struct walk *walk, uint32_t at, uint32_t level)
 			continue;
 		if (walk->known >= walk->solid->node_count)
 			return -EBADMSG;
-		for (int axis = 0; axis < 3; axis++)
-			walk->places[walk->known][axis] =
-				(uint16_t)(2u * walk->places[at][axis] + (child >> axis & 1));
+		walk->spots[walk->known].id = SOLID_CHILDREN * at + child;
 		walk->known++;
 	}
 	node->states = (uint16_t)states;
@@ -171,15 +175,15 @@ static int code_nodes(struct walk *walk)
 	int rc = 0;
 
 	walk->models = calloc(2, sizeof(*walk->models));
-	walk->places = calloc(count, sizeof(*walk->places));
-	if (!walk->models || !walk->places)
+	walk->spots = calloc(count, sizeof(*walk->spots));
+	if (!walk->models || !walk->spots)
 		rc = -ENOMEM;
 	walk->known = 1;
 	for (uint32_t level = 0; rc == 0 && level < walk->solid->depth; level++)
 		for (const uint32_t end = walk->known; rc == 0 && at < end; at++)
 			rc = code_node(walk, at, level);
 	free(walk->models);
-	free(walk->places);
+	free(walk->spots);
 	return rc == 0 && walk->known != count ? -EBADMSG : rc;
 }
 

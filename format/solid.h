@@ -12,7 +12,7 @@
 
 enum solid_state { SOLID_FREE, SOLID_FULL, SOLID_DIVIDED };
 
-enum { SOLID_DEPTH_MAX = 12, SOLID_NODES_MAX = 1 << 20, SOLID_CHILDREN = 8 };
+enum { SOLID_DEPTH_MAX = 12, SOLID_NODES_MAX = 1 << 19, SOLID_CHILDREN = 8 };
 
 struct solid_node {
 	uint32_t first;  /* index of the node of its first divided child; the others follow */

@@ -124,8 +124,11 @@ float solid_reach(const struct solid *solid, const float from_m[3], const float 
 		if (!isfinite(ray.from[i]) || !isfinite(ray.direction[i]))
 			return 0;
 	}
+	/* Asked apart, because a ray that begins in a side of the root may miss it. */
+	if (!solid_is_free(solid, from_m))
+		return 0;
 	if (vec_dot(direction, direction) < 0.5f)
-		return solid_is_free(solid, from_m) ? INFINITY : 0;
+		return INFINITY;
 	inside = ray_enter(&ray, side);
 	while (inside && ray.at <= most) {
 		struct solid_cell cell;

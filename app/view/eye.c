@@ -1,5 +1,5 @@
-/* Binds the navigator to the scene: bounds and clearance come from it, and fingers pick points of
- * its surface. Also flies to parts, so that they are in the middle of the free area. */
+/* Binds the navigator to the scene: bounds and where the eye may be come from it, and fingers pick
+ * points of its surface. Also flies to parts, so that they are in the middle of the free area. */
 #include "app/view/eye.h"
 
 #include <math.h>
@@ -18,11 +18,20 @@ void eye_init(struct eye *eye, const struct exhibit *shown)
 	*eye = (struct eye){ .shown = shown };
 }
 
-static float free_ahead(void *data, const float from_m[3], const float direction[3], float most_m)
+static float reach(void *data, const float from_m[3], const float direction[3], float most_m,
+		   int *axis)
 {
 	const struct eye *eye = data;
 
-	return scene_clearance(eye->shown->scene, from_m, direction, most_m);
+	return scene_reach(eye->shown->scene, from_m, direction, most_m,
+			   navigator_keep_off_m(&eye->navigator), axis);
+}
+
+static const struct solid *solid(void *data)
+{
+	const struct eye *eye = data;
+
+	return scene_solid(eye->shown->scene);
 }
 
 void eye_take_bounds(struct eye *eye)
@@ -30,7 +39,8 @@ void eye_take_bounds(struct eye *eye)
 	const struct root_page *root = scene_root(eye->shown->scene);
 	struct navigator_options options = {
 		.fov_deg = FOV_DEG,
-		.clearance = free_ahead,
+		.reach = reach,
+		.solid = solid,
 		.data = eye,
 	};
 

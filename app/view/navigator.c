@@ -1,9 +1,10 @@
 /* Moves the eye: turning, zooming and panning about a pivot, flings that slow down, and timed
- * flights. The eye stays within bounds; only a flight without a free path may pass a surface. */
+ * flights. The eye stays within bounds. */
 #include "app/view/navigator.h"
 
 #include <math.h>
 
+#include "geometry/solid_space.h"
 #include "geometry/vec.h"
 
 #define PITCH_MAX      1.45f /* radians; beyond it "up" on the panel would flip */
@@ -15,9 +16,10 @@
 #define GROUND_LEAST_SHARE 0.005f
 #define KEEP_OFF_M         0.35f /* smallest distance of the eye to a surface */
 #define KEEP_OFF_SHARE     0.02f
-#define BOW_MAX            2.0f /* largest factor by which a curved path prolongs a flight */
-#define FAR_SHARE          2.5f /* largest distance of the eye, in half diagonals of the model */
-#define FAR_OVER_HOME      1.1f /* or in distances of the first view, if more */
+#define LONGER_MAX         2.0f   /* largest factor by which a way around prolongs a flight */
+#define MARGIN_SHARE       0.005f /* of KEEP_OFF_M: where the eye stops before its space ends */
+#define FAR_SHARE          2.5f   /* largest distance of the eye, in half diagonals of the model */
+#define FAR_OVER_HOME      1.1f   /* or in distances of the first view, if more */
 
 static void view_direction(const struct navigator *nav, float out[3])
 {
@@ -90,27 +92,71 @@ static void keep_in_bounds(const struct navigator *nav, float eye_m[3])
 	eye_m[2] = fmaxf(eye_m[2], lowest_m(nav));
 }
 
-/* Moves the eye towards to_m until something is in the way. Returns true if it got there. to_m is
- * first moved into the bounds. */
-static bool move_eye(struct navigator *nav, float to_m[3])
+static const struct solid *solid_of(const struct navigator *nav)
+{
+	return nav->options.solid ? nav->options.solid(nav->options.data) : NULL;
+}
+
+/* Returns how far the eye may go from from_m, a little less than where its space ends, at most
+ * length_m. */
+static float reach(const struct navigator *nav, const float from_m[3], const float direction[3],
+		   float length_m, int *axis)
 {
 	const struct navigator_options *o = &nav->options;
-	const float off = navigator_keep_off_m(nav);
-	float way[3], length, free_m;
+	const float margin_m = MARGIN_SHARE * navigator_keep_off_m(nav);
+	float reach_m;
+
+	*axis = -1;
+	if (!o->reach)
+		return length_m;
+	reach_m = o->reach(o->data, from_m, direction, length_m + margin_m, axis) - margin_m;
+	return clamp(reach_m, 0, length_m);
+}
+
+/* An eye that was put into stone, by a pose of the content or another release, comes out of it
+ * before it is moved: no way leads on from there. */
+static void leave_stone(struct navigator *nav)
+{
+	const struct solid *solid = solid_of(nav);
+	const float up[3] = { 0, 0, 1 };
+	float free_m[3];
+	int axis;
+
+	/* What the section cuts away holds nobody up, though the octree has it. */
+	if (solid && !solid_is_free(solid, nav->eye_m) &&
+	    nav->options.reach(nav->options.data, nav->eye_m, up, 1, &axis) <= 0 &&
+	    solid_nearest_free(solid, nav->eye_m, INFINITY, free_m))
+		vec_copy(nav->eye_m, free_m);
+}
+
+/* Moves the eye towards to_m until something is in the way, and then along that. Returns true if it
+ * got there. to_m is first moved into the bounds. */
+static bool move_eye(struct navigator *nav, float to_m[3])
+{
+	const float least_m = 1e-6f * navigator_diagonal_m(nav);
+	float left[3];
 
 	keep_in_bounds(nav, to_m);
-	vec_sub(way, to_m, nav->eye_m);
-	length = vec_length(way);
-	if (length < 1e-6f * navigator_diagonal_m(nav))
-		return true;
-	vec_scale(way, 1 / length, way);
-	free_m = o->clearance ? o->clearance(o->data, nav->eye_m, way, length + off) : INFINITY;
-	if (free_m >= length + off) {
-		vec_copy(nav->eye_m, to_m);
-		return true;
+	vec_sub(left, to_m, nav->eye_m);
+	for (int slide = 0; slide < 3; slide++) {
+		float direction[3], length_m, go_m;
+		int axis;
+
+		vec_copy(direction, left);
+		length_m = vec_normalise(direction);
+		if (length_m < least_m)
+			return slide == 0;
+		go_m = reach(nav, nav->eye_m, direction, length_m, &axis);
+		if (go_m >= length_m && slide == 0) {
+			vec_copy(nav->eye_m, to_m);
+			return true;
+		}
+		vec_add_scaled(nav->eye_m, nav->eye_m, go_m, direction);
+		vec_add_scaled(left, left, -go_m, direction);
+		if (axis < 0)
+			return false;
+		left[axis] = 0;
 	}
-	free_m = fmaxf(0, free_m - off);
-	vec_add_scaled(nav->eye_m, nav->eye_m, fminf(free_m, length), way);
 	return false;
 }
 
@@ -153,10 +199,12 @@ void navigator_grab(struct navigator *nav, const float pivot_m[3])
 static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
 {
 	const float pitch = clamp(nav->pitch + pitch_by, -PITCH_MAX, PITCH_MAX);
-	const struct navigator before = *nav;
 	float arm[3], right[3], eye[3];
 	float up[3] = { 0, 0, 1 };
+	struct navigator before;
 
+	leave_stone(nav);
+	before = *nav;
 	vec_sub(arm, nav->eye_m, nav->pivot_m);
 	view_right(nav, right);
 	rotate(arm, pitch - nav->pitch, right);
@@ -185,6 +233,7 @@ void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_p
 	const float focal_px = height_px / 2 / tanf(nav->options.fov_deg * (float)M_PI / 360);
 	float direction[3], right[3], up[3], arm[3], eye[3], depth;
 
+	leave_stone(nav);
 	if (scale > 0 && isfinite(scale)) {
 		vec_sub(arm, nav->eye_m, nav->pivot_m);
 		vec_scale(arm, 1 / clamp(scale, 0.2f, 5), arm);
@@ -210,37 +259,27 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s)
 	nav->fling_px_s[1] = vy_px_s;
 }
 
-/* Returns whether the eye can go straight from from_m to to_m without passing a surface, and stand
- * at to_m with no surface within the near plane's distance. */
-static bool way_is_free(void *data, const float from_m[3], const float to_m[3])
+/* Plans the way of a flight. Returns whether there is one; else it is its last point alone. */
+static bool plan(struct navigator *nav, const float to_m[3])
 {
-	const struct navigator *nav = data;
-	const struct navigator_options *o = &nav->options;
-	const float room_m = navigator_keep_off_m(nav) / 3;
-	float from[3], to[3], way[3], length;
+	const struct solid *solid = solid_of(nav);
+	float direction[3], to[3], length_m;
+	int axis, rc = 0;
 
-	if (!o->clearance)
-		return true;
-	vec_copy(from, from_m);
 	vec_copy(to, to_m);
-	keep_in_bounds(nav, from);
 	keep_in_bounds(nav, to);
-	vec_sub(way, to, from);
-	length = vec_length(way);
-	if (length > 0) {
-		vec_scale(way, 1 / length, way);
-		if (o->clearance(o->data, from, way, length) < length)
-			return false;
-	}
-	for (int axis = 0; axis < 3; axis++) {
-		for (int sign = -1; sign <= 1; sign += 2) {
-			float direction[3] = { 0 };
-			direction[axis] = (float)sign;
-			if (o->clearance(o->data, to, direction, room_m) < room_m)
-				return false;
-		}
-	}
-	return true;
+	vec_sub(direction, to, nav->eye_m);
+	length_m = vec_normalise(direction);
+	solid_way_straight(&nav->way, nav->eye_m, to);
+	if (reach(nav, nav->eye_m, direction, length_m, &axis) >= length_m)
+		return true;
+	if (solid)
+		rc = solid_way_plan(&nav->way, solid, nav->eye_m, to);
+	if (solid && rc == 0)
+		return true;
+	vec_copy(to, solid_way_end_m(&nav->way));
+	solid_way_straight(&nav->way, to, to);
+	return false;
 }
 
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
@@ -249,17 +288,17 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	float turn, straight_m, longer;
 
 	stop(nav);
-	flight_way_choose(&nav->way, nav->eye_m, eye_m,
-			  nav->options.box_max_m[2] - nav->options.box_min_m[2], way_is_free, nav);
-	straight_m = vec_distance(nav->eye_m, eye_m);
-	longer = straight_m > 0 ? flight_way_length_m(&nav->way) / straight_m : 1;
+	if (!plan(nav, eye_m))
+		duration_ms = 1;
+	straight_m = vec_distance(nav->eye_m, solid_way_end_m(&nav->way));
+	longer = straight_m > 0 ? solid_way_length_m(&nav->way) / straight_m : 1;
 	vec_copy(nav->pivot_m, target_m);
 	nav->from_yaw = nav->yaw;
 	nav->from_pitch = nav->pitch;
-	angles_of(eye_m, target_m, &nav->to_yaw, &nav->to_pitch);
+	angles_of(solid_way_end_m(&nav->way), target_m, &nav->to_yaw, &nav->to_pitch);
 	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the shorter way round */
 	nav->to_yaw = nav->from_yaw + turn;
-	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * fminf(longer, BOW_MAX), 1);
+	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * clamp(longer, 1, LONGER_MAX), 1);
 }
 
 void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3])
@@ -268,7 +307,7 @@ void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[
 	float direction[3];
 
 	if (nav->flight_left_ms > 0) {
-		vec_copy(there.eye_m, nav->way.to_m);
+		vec_copy(there.eye_m, solid_way_end_m(&nav->way));
 		there.yaw = nav->to_yaw;
 		there.pitch = nav->to_pitch;
 	}
@@ -282,21 +321,20 @@ void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[
 bool navigator_is_left_alone(const struct navigator *nav)
 {
 	return nav->flight_left_ms > 0 ||
-	       (nav->flight_ms > 0 && vec_distance(nav->eye_m, nav->way.to_m) < 1e-3f &&
+	       (nav->flight_ms > 0 &&
+		vec_distance(nav->eye_m, solid_way_end_m(&nav->way)) < 1e-3f &&
 		fabsf(remainderf(nav->yaw - nav->to_yaw, 2 * (float)M_PI)) < 1e-4f &&
 		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
 }
 
 static void step_flight(struct navigator *nav, float dt_ms)
 {
-	float t, eye[3];
+	float t;
 
 	nav->flight_left_ms = fmaxf(0, nav->flight_left_ms - dt_ms);
 	t = 1 - nav->flight_left_ms / nav->flight_ms;
 	t = t * t * (3 - 2 * t);
-	flight_way_at(&nav->way, t, eye);
-	keep_in_bounds(nav, eye);
-	vec_copy(nav->eye_m, eye); /* even through a wall, if no path was free */
+	solid_way_at(&nav->way, t, nav->eye_m);
 	nav->yaw = nav->from_yaw + t * (nav->to_yaw - nav->from_yaw);
 	nav->pitch = nav->from_pitch + t * (nav->to_pitch - nav->from_pitch);
 }

@@ -1,15 +1,15 @@
 /* Moves the eye as fingers ask. The pivot is the surface point that was touched: one finger turns
  * about it; two fingers zoom towards it, pan with it and rotate about it. It stays under the
  * fingers. A fling continues after the finger has left and slows down. The eye stays in its allowed
- * space: outside of solid matter (by the clearance that the scene reports), above the ground, and
- * near the model. Only a flight that finds no free path may pass through matter.
+ * space: outside of solid matter, above the ground, and near the model. A flight leads through
+ * doors and around walls; where no way is found, the eye is at its end at once.
  *
- * Pure except for the clearance callback: no time, no scene, no GL. */
+ * Pure except for the callbacks: no time, no scene, no GL. */
 #ifndef GOPURA_APP_VIEW_NAVIGATOR_H
 #define GOPURA_APP_VIEW_NAVIGATOR_H
 
-#include "app/view/flight_way.h"
 #include "geometry/camera.h"
+#include "geometry/solid_way.h"
 
 #include <stdbool.h>
 
@@ -17,10 +17,14 @@ struct navigator_options {
 	float box_min_m[3], box_max_m[3]; /* bounding box of the model */
 	float home_eye_m[3], home_target_m[3];
 	float fov_deg; /* vertical */
-	/* Returns the free distance from a point along a unit direction, at most most_m. NULL: no
-	 * obstacles. */
-	float (*clearance)(void *data, const float from_m[3], const float direction[3],
-			   float most_m);
+	/* Returns how far the eye may go from a point along a unit direction: 0: no farther,
+	 * INFINITY: at least most_m. *axis becomes the axis across which it is held up, or -1.
+	 * NULL: no obstacles. */
+	float (*reach)(void *data, const float from_m[3], const float direction[3], float most_m,
+		       int *axis);
+	/* Returns the octree by which flights are planned, borrowed for the call of the navigator
+	 * that asks; NULL: there is none. NULL: there is never one. */
+	const struct solid *(*solid)(void *data);
 	void *data;
 };
 
@@ -34,7 +38,7 @@ struct navigator {
 
 	/* A flight to another pose; flight_left_ms is 0 if there is none. */
 	float flight_left_ms, flight_ms;
-	struct flight_way way;
+	struct solid_way way;
 	float from_yaw, to_yaw, from_pitch, to_pitch;
 };
 
@@ -52,8 +56,9 @@ void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_p
 		     float height_px);
 /* The finger left with this speed, which goes on as a fling. */
 void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
-/* Flies smoothly to a pose, around obstacles where a path is found; a touch stops it. duration_ms:
- * for the straight path; a longer path takes proportionally longer, at most twice that time. */
+/* Flies smoothly to a pose, or as near to it as an eye may be, around obstacles; a touch stops it.
+ * Without a way the next step is there. duration_ms: for the straight path; a longer path takes
+ * proportionally longer, at most twice that time. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
 /* Writes the pose that the eye has, or flies to. */

@@ -10,6 +10,7 @@
 #include "format/message.h"
 #include "format/root_page.h"
 #include "format/scenery.h"
+#include "format/solid.h"
 #include "geometry/camera.h"
 #include "geometry/region.h"
 #include "geometry/section.h"
@@ -142,8 +143,17 @@ bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, fl
  * not here yet, or the release has none. */
 const char *scene_part(struct scene *scene, const struct camera *camera, float x_px, float y_px);
 /* Returns the distance in metres from a point to the nearest surface along a direction (of any
- * length); INFINITY: nothing within most_m. Used to keep the eye out of solid matter. */
+ * length); INFINITY: nothing within most_m. */
 float scene_clearance(struct scene *scene, const float from_m[3], const float direction[3],
 		      float most_m);
+/* Returns the octree of where an eye may be, borrowed until another release is opened. NULL: it is
+ * not here yet, or the release has none (docs/solid.md). */
+const struct solid *scene_solid(const struct scene *scene);
+/* Returns how far an eye may go from a point along a direction, a unit vector; 0: no farther,
+ * INFINITY: at least most_m. By the octree, but for the stone that the section cuts away; without
+ * one up to room_m before the shown surface. *axis becomes the axis that is perpendicular to the
+ * side of the cell that holds the eye up; -1: unknown, or the eye is within stone. */
+float scene_reach(struct scene *scene, const float from_m[3], const float direction[3],
+		  float most_m, float room_m, int *axis);
 
 #endif

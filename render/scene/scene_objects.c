@@ -12,6 +12,7 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_labels.h"
 #include "render/scene/scene_scenery.h"
+#include "render/scene/scene_space.h"
 #include "render/scene/scene_stream.h"
 
 enum {
@@ -128,6 +129,7 @@ static void forget(struct scene *scene)
 		drop_hierarchy(scene);
 	scene_drop_stream(scene);
 	scene_drop_scenery(scene);
+	solid_finish(&scene->solid);
 	repository_finish(&scene->repository);
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
@@ -328,6 +330,8 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 		return stream_growth_give(&scene->stream.growth, (uint32_t)object->id, bytes);
 	case OBJECT_SCENERY:
 		return scene->scenery.is_here ? 0 : scene_open_scenery(scene, bytes);
+	case OBJECT_SOLID:
+		return scene_open_solid(scene, bytes);
 	}
 	return -EBADMSG;
 }
@@ -345,7 +349,8 @@ void scene_refuse(struct scene *scene, struct object *object, int error)
 					     "labels",
 					     "stream page",
 					     "block of the streaming mesh",
-					     "scenery" };
+					     "scenery",
+					     "octree of where an eye may be" };
 	char hex[HASH_HEX_BYTES];
 	hash_to_hex(object->hash, hex);
 	log_error("render", "content bug: %s %s cannot be used: %s", names[object->kind], hex,
@@ -416,36 +421,4 @@ void scene_use(struct scene *scene, const struct scene_tools *tools)
 	scene->tools_moved |= was->on != rake->on ||
 			      (rake->on && memcmp(was->at, rake->at, sizeof(was->at)) != 0);
 	scene->tools = *tools;
-}
-
-/* ---- rays */
-
-bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
-		float point_m[3])
-{
-	float direction[3], distance = INFINITY, least = camera->near_m;
-	if (!scene->has_hierarchy)
-		return false;
-	camera_ray(camera, x_px, y_px, direction);
-	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
-	    (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least,
-			   &distance, NULL) &
-	     (scene_ray_scenery(scene, camera->eye_m, direction, least, &distance) ==
-	      SCENERY_NONE)))
-		return false;
-	vec_add_scaled(point_m, camera->eye_m, distance, direction);
-	return true;
-}
-
-float scene_clearance(struct scene *scene, const float from_m[3], const float direction[3],
-		      float most_m)
-{
-	float unit[3], distance = most_m, least = 0;
-	memcpy(unit, direction, sizeof(unit));
-	if (!scene->has_hierarchy || vec_normalise(unit) <= 0 ||
-	    !section_clip(&scene->tools.section, from_m, unit, &least, &distance))
-		return INFINITY;
-	return geometry_ray(&scene->geometry, &scene->cut, from_m, unit, least, &distance, NULL)
-		       ? distance
-		       : INFINITY;
 }

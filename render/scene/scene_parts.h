@@ -34,6 +34,7 @@ enum object_kind {
 	OBJECT_STREAM,
 	OBJECT_BLOCK, /* id: block of the streaming mesh */
 	OBJECT_SCENERY,
+	OBJECT_SOLID,
 };
 
 enum object_state { OBJECT_WANTED, OBJECT_DECODING, OBJECT_BAD };
@@ -125,6 +126,7 @@ struct scene {
 	struct repository repository;
 	struct scene_stream stream;
 	struct scene_scenery scenery;
+	struct solid solid; /* of where an eye may be; without nodes: not here */
 
 	struct scene_effort effort; /* while the eye moves */
 	struct scene_effort used;   /* in this frame */

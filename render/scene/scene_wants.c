@@ -326,6 +326,9 @@ static void want_images(struct scene *scene)
 
 /* ---- the list */
 
+/* Before what is seen only from nearby, after what a first picture is made of. */
+enum { SPACE_PRIORITY = MESSAGE_PRIORITY_INDEX - 1 };
+
 static int by_priority(const void *a, const void *b)
 {
 	const struct message_want *left = a, *right = b;
@@ -374,6 +377,9 @@ void scene_list_wants(struct scene *scene)
 		want_child_of_root(scene, OBJECT_SCENERY,
 				   root_page_scenery(&scene->root, scene->root_child_count),
 				   FIRST_PRIORITY - 1);
+	if (scene->root.has_solid && !scene->solid.nodes)
+		want_child_of_root(scene, OBJECT_SOLID, scene->root_child_count - 1,
+				   SPACE_PRIORITY);
 	if (scene->has_hierarchy)
 		want_groups(scene);
 	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))

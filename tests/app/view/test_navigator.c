@@ -2,8 +2,10 @@
 
 #include <math.h>
 
+#include "geometry/solid_space.h"
 #include "geometry/vec.h"
 #include "tests/check.h"
+#include "tests/format/solid_example.h"
 
 enum { HEIGHT_PX = 720 };
 
@@ -103,11 +105,13 @@ static void panning_moves_the_point_with_the_fingers(void **state)
 	check_pivot_stays(&before, &nav, pivot, 30 / focal_px, 20 / focal_px);
 }
 
-static float wall_at_minus_21(void *data, const float from[3], const float direction[3], float most)
+static float wall_at_minus_21(void *data, const float from[3], const float direction[3], float most,
+			      int *axis)
 {
 	float d = direction[0] > 0 ? (-21 - from[0]) / direction[0] : INFINITY;
 
 	(void)data;
+	*axis = -1;
 	return d >= 0 && d < most ? d : INFINITY;
 }
 
@@ -117,7 +121,7 @@ static void never_passes_a_wall(void **state)
 	struct navigator nav;
 
 	(void)state;
-	options.clearance = wall_at_minus_21;
+	options.reach = wall_at_minus_21;
 	navigator_init(&nav, &options);
 	navigator_grab(&nav, pivot); /* behind the wall */
 	for (int i = 0; i < 200; i++) {
@@ -177,79 +181,221 @@ static void a_flight_ends_where_it_was_sent_the_short_way_round(void **state)
 	CHECK(camera.near_m > 0 && camera.far_m > 100);
 }
 
-/* A temple of one box, 20 m wide and high, without a ceiling to look for: steps of 0.1 m find it.
- */
-static float box_ahead(void *data, const float from[3], const float direction[3], float most)
+/* A temple of one hollow box, 20 m wide and high, with walls and a roof of 2 m and a door in the
+ * south; and a cell beside it that no way leads out of. */
+static bool temple(const int32_t place[3])
+{
+	const int32_t x = place[0] - 32, y = place[1] - 32, z = place[2];
+	const int32_t far = x * x > y * y ? x * x : y * y;
+	const bool door = x > -3 && x < 3 && y < 0 && z < 6;
+	const bool cell = x > 14 && x < 20 && y > 14 && y < 20 && z < 6;
+
+	return z < 1 || (cell && !(x == 17 && y == 17 && z == 3)) ||
+	       (far <= 100 && z < 20 && (far > 64 || z >= 18) && !door);
+}
+
+static struct solid built;
+
+static const struct solid *solid_of_temple(void *data)
 {
 	(void)data;
-	for (float m = 0; m < most; m += 0.1f) {
-		const float p[3] = { from[0] + m * direction[0], from[1] + m * direction[1],
-				     from[2] + m * direction[2] };
-		if (fabsf(p[0]) < 10 && fabsf(p[1]) < 10 && p[2] < 20)
-			return m;
-	}
-	return INFINITY;
+	return &built;
 }
 
-/* From each side to the opposite one, low and high. */
+static float reach_in_temple(void *data, const float from[3], const float direction[3], float most,
+			     int *axis)
+{
+	(void)data;
+	return solid_reach(&built, from, direction, most, axis);
+}
+
+static int build_temple(void **state)
+{
+	(void)state;
+	solid_example_init(&built, 6, 1, (const float[3]){ -32, -32, -0.8f }, temple);
+	return 0;
+}
+
+static int raze_temple(void **state)
+{
+	(void)state;
+	solid_finish(&built);
+	return 0;
+}
+
+static struct navigator_options at_temple(void)
+{
+	struct navigator_options options = hall;
+
+	options.reach = reach_in_temple;
+	options.solid = solid_of_temple;
+	return options;
+}
+
+static const float middle[3] = { 0, 0, 8 };
+
+/* From each side to the opposite one, and from each into the temple and out of it. */
 static void a_flight_leads_round_what_is_in_the_way(void **state)
 {
-	static const float middle[3] = { 0, 0, 8 };
-	struct navigator_options options = hall;
-	const float none[3] = { 0, 0, 1 };
-	int bows = 0;
+	const struct navigator_options options = at_temple();
+	int longer = 0;
 
 	(void)state;
-	options.clearance = box_ahead;
-	for (int i = 0; i < 32; i++) {
+	for (int i = 0; i < 48; i++) {
 		const float turn = (float)(i % 16) * 0.37f, far = i < 16 ? 18 : 40;
 		const float from[3] = { far * cosf(turn), far * sinf(turn), i % 3 ? 2 : 15 };
-		const float to[3] = { -from[0], -from[1], i % 4 ? 1.8f : 12 };
+		const float across[3] = { -from[0], -from[1], i % 4 ? 1.8f : 12 };
+		const float within[3] = { 2, 3, 4 };
+		const float *to = i < 32 ? across : within;
 		struct navigator nav;
+
 		navigator_init(&nav, &options);
 		navigator_look(&nav, from, middle);
-		navigator_fly(&nav, to, middle, 900);
-		while (navigator_step(&nav, 16, HEIGHT_PX)) {
-			CHECK(box_ahead(NULL, nav.eye_m, none, 0.05f) > 0.05f);
-			bows += nav.flight_ms > 910;
+		for (int back = 0; back < 2; back++) {
+			navigator_fly(&nav, back ? from : to, middle, 900);
+			while (navigator_step(&nav, 16, HEIGHT_PX)) {
+				CHECK(solid_is_free(&built, nav.eye_m));
+				longer += nav.flight_ms > 910;
+			}
+			CHECK(vec_distance(nav.eye_m, back ? from : to) < 1e-3f);
 		}
-		CHECK(vec_distance(nav.eye_m, to) < 1e-3f);
 	}
-	CHECK(bows > 0);
+	CHECK(longer > 0);
 }
 
-/* Where it stands something is so near that no way is free, and it has hardly any to go. */
-static void a_step_is_no_reason_for_a_detour(void **state)
+/* Where no way leads to, and within stone. */
+static void a_flight_without_a_way_is_over_at_once(void **state)
 {
-	const float here[3] = { -10.02f, 0, 5 }, there[3] = { -10.02f, 0.01f, 5 };
-	const float target[3] = { 0, 0, 5 };
-	struct navigator_options options = hall;
+	const struct navigator_options options = at_temple();
+	const float in_cell[3] = { 17.5f, 17.5f, 2.7f }, in_wall[3] = { -9.3f, 0, 5 };
 	struct navigator nav;
 
 	(void)state;
-	options.clearance = box_ahead;
 	navigator_init(&nav, &options);
-	navigator_look(&nav, here, target);
-	navigator_fly(&nav, there, target, 800);
+	navigator_fly(&nav, in_cell, middle, 900);
+	CHECK(nav.flight_left_ms <= 1);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(vec_distance(nav.eye_m, in_cell) < 1e-3f);
+	navigator_fly(&nav, hall.home_eye_m, middle, 900);
+	CHECK(navigator_step(&nav, 16, HEIGHT_PX));
+	CHECK(vec_distance(nav.eye_m, hall.home_eye_m) < 1e-3f);
+	navigator_fly(&nav, in_wall, middle, 900);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(solid_is_free(&built, nav.eye_m));
+	CHECK(vec_distance(nav.eye_m, in_wall) < 2);
+}
+
+/* A pose of the content, or what is left of the release before. */
+static void an_eye_in_stone_comes_out(void **state)
+{
+	const struct navigator_options options = at_temple();
+	const float in_wall[3] = { -9.3f, 0, 5 };
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, in_wall, middle);
+	navigator_turn(&nav, 3, 0, HEIGHT_PX);
+	CHECK(solid_is_free(&built, nav.eye_m) && vec_distance(nav.eye_m, in_wall) < 2);
+	navigator_look(&nav, in_wall, middle);
+	navigator_pinch(&nav, 1, 1, 0, 0, HEIGHT_PX);
+	CHECK(solid_is_free(&built, nav.eye_m) && vec_distance(nav.eye_m, in_wall) < 2);
+}
+
+static uint32_t seed = 9;
+
+static float random_share(void)
+{
+	seed = seed * 1664525 + 1013904223;
+	return (float)(seed >> 8) / (1 << 24);
+}
+
+/* One drag, pinch, fling or flight as a visitor's hand would make it; no pivot is known to be on a
+ * surface. */
+static void play(struct navigator *nav)
+{
+	const float pivot_m[3] = { random_share() * 30 - 15, random_share() * 30 - 15,
+				   random_share() * 20 };
+	const float dx = random_share() * 60 - 30, dy = random_share() * 60 - 30;
+	const int kind = (int)(random_share() * 4);
+
+	navigator_grab(nav, pivot_m);
+	for (int i = 0; kind == 0 && i < 8; i++)
+		navigator_turn(nav, dx, dy, HEIGHT_PX);
+	for (int i = 0; kind == 1 && i < 8; i++)
+		navigator_pinch(nav, 0.8f + random_share() * 0.5f, dx, dy, dx / 300, HEIGHT_PX);
+	if (kind == 2)
+		navigator_fling(nav, 30 * dx, 30 * dy);
+	if (kind == 3)
+		navigator_fly(nav, pivot_m, middle, 200);
+	for (int i = 0; i < 40 && navigator_step(nav, 16, HEIGHT_PX); i++)
+		CHECK(solid_is_free(&built, nav->eye_m));
+	CHECK(solid_is_free(&built, nav->eye_m));
+}
+
+static void no_hand_brings_an_eye_into_stone_or_holds_it_there(void **state)
+{
+	const struct navigator_options options = at_temple();
+	float was[3];
+	struct navigator nav;
+	int within = 0, stuck = 0;
+
+	(void)state;
+	navigator_init(&nav, &options);
+	for (int i = 0; i < 2000; i++) {
+		vec_copy(was, nav.eye_m);
+		play(&nav);
+		within += fabsf(nav.eye_m[0]) < 8 && fabsf(nav.eye_m[1]) < 8 && nav.eye_m[2] < 17;
+		/* Of so many gestures one leads away from any place. */
+		stuck = vec_distance(was, nav.eye_m) > 0.01f ? 0 : stuck + 1;
+		CHECK(stuck < 12);
+	}
+	CHECK(within > 50);
+}
+
+/* A hand that pushes against a wall at a slant goes along it. */
+static void an_eye_slides_along_a_wall(void **state)
+{
+	const struct navigator_options options = at_temple();
+	const float before_wall[3] = { -12, -4, 5 }, ahead[3] = { -12, 30, 5 };
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, before_wall, ahead);
+	navigator_grab(&nav, (const float[3]){ 0, 4, 5 });
+	navigator_pinch(&nav, 4, 0, 0, 0, HEIGHT_PX);
+	CHECK(nav.eye_m[0] < -10 && nav.eye_m[1] > 1);
+	CHECK(solid_is_free(&built, nav.eye_m));
+}
+
+static void a_step_is_no_reason_for_a_detour(void **state)
+{
+	const struct navigator_options options = at_temple();
+	const float here[3] = { -11.02f, 0, 5 }, there[3] = { -11.02f, 0.01f, 5 };
+	struct navigator nav;
+
+	(void)state;
+	navigator_init(&nav, &options);
+	navigator_look(&nav, here, middle);
+	navigator_fly(&nav, there, middle, 800);
 	while (navigator_step(&nav, 16, HEIGHT_PX))
 		CHECK(vec_distance(nav.eye_m, here) < 0.05f);
-	navigator_fly(&nav, there, target, 800);
-	while (navigator_step(&nav, 16, HEIGHT_PX))
-		CHECK(vec_distance(nav.eye_m, there) < 1e-3f);
+	CHECK(vec_distance(nav.eye_m, there) < 1e-3f);
 }
 
 static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
 {
-	const float eye[3] = { -50, -30, 12 }, target[3] = { 0, 0, 8 };
-	struct navigator_options options = hall;
+	const struct navigator_options options = at_temple();
+	const float eye[3] = { -50, -30, 12 };
 	struct navigator nav;
 	float along[3], from[3], off[3];
 
 	(void)state;
-	options.clearance = box_ahead;
 	navigator_init(&nav, &options);
 	vec_copy(from, nav.eye_m);
-	navigator_fly(&nav, eye, target, 800);
+	navigator_fly(&nav, eye, middle, 800);
 	CHECK(fabsf(nav.flight_ms - 800) < 1);
 	vec_sub(along, eye, from);
 	while (navigator_step(&nav, 16, HEIGHT_PX)) {
@@ -259,21 +405,21 @@ static void where_nothing_is_in_the_way_a_flight_is_straight(void **state)
 	}
 }
 
-/* Out of a room without a door: better through the wall than never. */
-static void a_flight_from_within_arrives_all_the_same(void **state)
+/* Of a release without an octree only rays are known. */
+static void without_an_octree_a_flight_is_straight_or_over_at_once(void **state)
 {
-	const float within[3] = { 0, 0, 5 }, eye[3] = { -50, -3, 12 }, target[3] = { 0, 0, 8 };
+	const float eye[3] = { -50, -3, 12 }, behind[3] = { 0, 0, 8 };
 	struct navigator_options options = hall;
 	struct navigator nav;
 
 	(void)state;
-	options.clearance = box_ahead;
+	options.reach = wall_at_minus_21;
 	navigator_init(&nav, &options);
-	navigator_look(&nav, within, target);
-	navigator_fly(&nav, eye, target, 800);
-	while (navigator_step(&nav, 16, HEIGHT_PX))
-		;
-	CHECK(vec_distance(nav.eye_m, eye) < 1e-3f);
+	navigator_fly(&nav, eye, middle, 800);
+	CHECK(nav.flight_left_ms >= 800);
+	navigator_fly(&nav, behind, middle, 800);
+	CHECK(nav.flight_left_ms <= 1 && navigator_step(&nav, 16, HEIGHT_PX));
+	CHECK(vec_distance(nav.eye_m, behind) < 1e-3f);
 }
 
 static void knows_whether_somebody_moved_it_since_a_flight(void **state)
@@ -301,11 +447,12 @@ static void knows_whether_somebody_moved_it_since_a_flight(void **state)
 }
 
 static float wall_before_bunny(void *data, const float from[3], const float direction[3],
-			       float most)
+			       float most, int *axis)
 {
-	float d = direction[0] > 0 ? (-0.08f - from[0]) / direction[0] : INFINITY;
+	float d = direction[0] > 0 ? (-0.0848f - from[0]) / direction[0] : INFINITY;
 
 	(void)data;
+	*axis = -1;
 	return d >= 0 && d < most ? d : INFINITY;
 }
 
@@ -317,7 +464,7 @@ static void a_small_model_is_approached_as_near_as_a_large_one(void **state)
 						 .home_eye_m = { -0.5f, 0, 0.15f },
 						 .home_target_m = { 0, 0, 0.11f },
 						 .fov_deg = 45,
-						 .clearance = wall_before_bunny };
+						 .reach = wall_before_bunny };
 	const float snout[3] = { -0.08f, 0, 0.1f };
 	struct navigator nav;
 	struct camera camera;
@@ -365,11 +512,15 @@ int main(void)
 		cmocka_unit_test(a_flight_leads_round_what_is_in_the_way),
 		cmocka_unit_test(a_step_is_no_reason_for_a_detour),
 		cmocka_unit_test(where_nothing_is_in_the_way_a_flight_is_straight),
-		cmocka_unit_test(a_flight_from_within_arrives_all_the_same),
+		cmocka_unit_test(a_flight_without_a_way_is_over_at_once),
+		cmocka_unit_test(without_an_octree_a_flight_is_straight_or_over_at_once),
+		cmocka_unit_test(an_eye_in_stone_comes_out),
+		cmocka_unit_test(an_eye_slides_along_a_wall),
+		cmocka_unit_test(no_hand_brings_an_eye_into_stone_or_holds_it_there),
 		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
 		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
 		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),
 	};
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, build_temple, raze_temple);
 }

@@ -5,15 +5,17 @@
 #include <string.h>
 
 #include "format/picture.h"
+#include "geometry/solid_space.h"
 #include "geometry/vec.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 #include "render/scene/scene_parts.h"
-#include "tests/render/scene/little_release.h"
+#include "tests/render/scene/little_solid.h"
 
 enum { WIDTH = 480, HEIGHT = 270, PIXELS = WIDTH * HEIGHT, FRAMES_MAX = 3000 };
 
 static struct little_release *release; /* made once for all tests */
+static struct hash spoiled_root;       /* of the same with an octree that is damaged */
 
 struct stage {
 	struct headless *headless;
@@ -213,6 +215,49 @@ static void rays_go_through_what_is_cut_away(void **state)
 		    3) < 0.02f);
 }
 
+static void an_eye_stops_before_stone_but_not_before_what_is_cut_away(void **state)
+{
+	const struct scene_tools none = { .section = { .on = false } };
+	const struct scene_tools tools = cut_through_pillars();
+	const float from[3] = { 4, -8, 2 }, north[3] = { 0, 1, 0 }, up[3] = { 0, 0, 1 };
+	const float in_pillar[3] = { 4, -4.5f, 2 };
+	const struct solid *solid;
+	float reach;
+	int axis;
+	(void)state;
+
+	CHECK(!scene_solid(stage.scene));
+	settle(&none, "octree");
+	solid = scene_solid(stage.scene);
+	CHECK(solid && solid_is_free(solid, from) && !solid_is_free(solid, in_pillar));
+	/* The pillar is 3 m away, as rays say. */
+	reach = scene_reach(stage.scene, from, north, 9, 0, &axis);
+	CHECK(reach <= 3 - solid->room_m && reach > 3 - solid->room_m - 2 * solid->cell_m);
+	CHECK(axis == 1);
+	CHECK(isinf(scene_reach(stage.scene, from, north, 2, 0, &axis)));
+	CHECK(scene_reach(stage.scene, in_pillar, up, 1, 0, &axis) == 0);
+	scene_use(stage.scene, &tools);
+	CHECK(isinf(scene_reach(stage.scene, from, north, 3.5f, 0, &axis)));
+	CHECK(isinf(scene_reach(stage.scene, in_pillar, up, 1, 0, &axis)));
+	reach = scene_reach(stage.scene, from, north, 9, 0, &axis);
+	CHECK(reach >= 3.99f && reach < 9);
+}
+
+static void a_damaged_octree_leaves_the_rays(void **state)
+{
+	const float from[3] = { 4, -8, 2 }, north[3] = { 0, 1, 0 };
+	const struct scene_tools none = { .section = { .on = false } };
+	int axis;
+	(void)state;
+
+	CHECK(scene_open(stage.scene, spoiled_root, release->root_bytes) == 0);
+	settle(&none, "rays");
+	CHECK(!scene_solid(stage.scene) && scene_refused(stage.scene) == 1);
+	CHECK(fabsf(scene_reach(stage.scene, from, north, 9, 0.3f, &axis) - 2.7f) < 0.02f);
+	CHECK(isinf(scene_reach(stage.scene, from, north, 2.6f, 0.3f, &axis)));
+	CHECK(axis == -1);
+}
+
 static void the_light_is_what_its_twin_says(void **state)
 {
 	static uint8_t before[4 * PIXELS];
@@ -326,13 +371,24 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		ON_A_STAGE(what_is_cut_shows_as_section_and_what_was_hidden_as_itself),
 		ON_A_STAGE(rays_go_through_what_is_cut_away),
+		ON_A_STAGE(an_eye_stops_before_stone_but_not_before_what_is_cut_away),
+		ON_A_STAGE(a_damaged_octree_leaves_the_rays),
 		ON_A_STAGE(the_light_is_what_its_twin_says),
 		ON_A_STAGE(a_light_that_is_moved_moves_the_picture_and_one_at_rest_does_not),
 		ON_A_STAGE(without_tools_the_picture_is_what_it_was),
 	};
+	struct hash plain_root;
+	uint32_t plain_bytes;
 	int failed;
 
 	release = little_release_make(4);
+	plain_root = release->root;
+	plain_bytes = release->root_bytes;
+	little_solid(release, true);
+	spoiled_root = release->root;
+	release->root = plain_root;
+	release->root_bytes = plain_bytes;
+	little_solid(release, false);
 	failed = cmocka_run_group_tests(tests, NULL, NULL);
 	little_release_free(release);
 	return failed;

@@ -1,0 +1,10 @@
+/* The space around the model in which an eye may be. */
+#ifndef GOPURA_RENDER_SCENE_SCENE_SPACE_H
+#define GOPURA_RENDER_SCENE_SCENE_SPACE_H
+
+#include "render/scene/scene_parts.h"
+
+/* Takes the octree of where an eye may be. Returns -EBADMSG if it is damaged, or -ENOMEM. */
+must_check int scene_open_solid(struct scene *scene, struct bytes object);
+
+#endif
