@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/vrml_extrusion.h"
 #include "pipeline/scene/vrml_faces.h"
+#include "pipeline/scene/vrml_nurbs.h"
 
 #define TURN 6.2831853f
 
@@ -225,12 +226,23 @@ static int add_extrusion(const struct shaping *shaping)
 	return vrml_extrusion_add(shaping->soup, shaping->node, shaping->rgb);
 }
 
+static int add_nurbs(const struct shaping *shaping)
+{
+	return vrml_nurbs_add(shaping->soup, shaping->node, shaping->rgb, shaping->diagnostics);
+}
+
 static const struct {
 	const char *name;
 	int (*add)(const struct shaping *shaping);
 } bodies[] = {
-	{ "Box", add_box },           { "Sphere", add_sphere },      { "Cone", add_cone },
-	{ "Cylinder", add_cylinder }, { "ElevationGrid", add_grid }, { "Extrusion", add_extrusion },
+	{ "Box", add_box },
+	{ "Sphere", add_sphere },
+	{ "Cone", add_cone },
+	{ "Cylinder", add_cylinder },
+	{ "ElevationGrid", add_grid },
+	{ "Extrusion", add_extrusion },
+	{ "NurbsSurface", add_nurbs },
+	{ "TrimmedSurface", add_nurbs },
 };
 
 static int add_any(const struct shaping *shaping)

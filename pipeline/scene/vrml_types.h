@@ -1,4 +1,5 @@
-/* The node types of VRML97 (ISO/IEC 14772-1, clause 6) and their fields, as one table. */
+/* The node types of VRML97 (ISO/IEC 14772-1, clause 6, and NURBS of amendment 1) and their fields,
+ * as one table. */
 #ifndef GOPURA_PIPELINE_SCENE_VRML_TYPES_H
 #define GOPURA_PIPELINE_SCENE_VRML_TYPES_H
 
