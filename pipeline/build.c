@@ -274,6 +274,25 @@ static void end_stage(const struct stopwatch *watch, struct report_stage *stage,
 		stage->memory_bytes = now.child_bytes;
 }
 
+static int make_surface(struct build_report *report, struct scans *scans)
+{
+	struct report_stage *stage = &report->stages[BUILD_SURFACE];
+	struct diagnostics diagnostics = { 0 };
+	struct scans_surface surface;
+	struct stopwatch watch;
+	bool made;
+	int rc;
+
+	scans_surface(scans, &surface);
+	if (surface.scan_count == 0)
+		return 0;
+	begin_stage(&watch);
+	rc = scans_make_surface(scans, &made, &diagnostics);
+	end_stage(&watch, stage, "surface");
+	stage->was_there = !made;
+	return rc < 0 ? fail(&diagnostics, rc) : 0;
+}
+
 static int make_master_and_samples(struct build_report *report, uint32_t jobs, struct scans *scans)
 {
 	const struct build_master_options mastering = { .jobs = jobs };
@@ -301,9 +320,13 @@ static int make_master_and_samples(struct build_report *report, uint32_t jobs, s
 static int run_stages(struct build_report *report, uint32_t jobs,
 		      const struct publish_content_options *publish)
 {
-	int rc = sources_check(publish->sources); /* before the long work, not after it */
+	int rc = sources_check_texts(publish->sources); /* before the long work, not after it */
 	struct stopwatch watch;
 
+	if (rc == 0)
+		rc = make_surface(report, sources_scans(publish->sources));
+	if (rc == 0)
+		rc = sources_check(publish->sources);
 	if (rc == 0)
 		rc = make_master_and_samples(report, jobs, sources_scans(publish->sources));
 	begin_stage(&watch);
@@ -316,10 +339,11 @@ static int run_stages(struct build_report *report, uint32_t jobs,
 /* A release without a report is a release; but a full disk must be told. */
 static int write_report(struct build_report *report, struct sources *sources)
 {
+	const uint32_t first = report->stages[BUILD_SURFACE].name ? BUILD_SURFACE : BUILD_HIERARCHY;
 	const struct report_options options = { .sources = sources,
 						.publish = &report->publish,
-						.stages = report->stages,
-						.stage_count = BUILD_STAGES };
+						.stages = &report->stages[first],
+						.stage_count = BUILD_STAGES - first };
 	int rc = report_write(&options, report->page);
 
 	if (rc < 0)

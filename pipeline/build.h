@@ -1,5 +1,6 @@
-/* Builds a release from a content folder: import, hierarchy, samples, publishing. Each stage runs
- * only if its inputs have changed, and continues where an interrupted run stopped. */
+/* Builds a release from a content folder: a surface of scans that are none, import and hierarchy,
+ * samples, publishing. Each stage runs only if its inputs have changed, and continues where an
+ * interrupted run stopped. */
 #ifndef GOPURA_PIPELINE_BUILD_H
 #define GOPURA_PIPELINE_BUILD_H
 
@@ -15,7 +16,9 @@ struct build_options {
 	uint32_t jobs;       /* processes and threads; 0: one per core */
 };
 
-enum build_stage { BUILD_HIERARCHY, BUILD_SAMPLES, BUILD_PUBLISHING, BUILD_STAGES };
+/* BUILD_SURFACE has no name unless range images or clouds are among the scans, or temple.ini asks
+ * for an octree. */
+enum build_stage { BUILD_SURFACE, BUILD_HIERARCHY, BUILD_SAMPLES, BUILD_PUBLISHING, BUILD_STAGES };
 
 struct build_report {
 	bool nothing_changed; /* since the last build; only the timestamp is new */

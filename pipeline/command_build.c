@@ -31,7 +31,7 @@ static const char help[] =
 	"  --dry-run         build nothing: check the content, and say what time, memory and disk a\n"
 	"                    build would take\n"
 	"\n"
-	"Reads DIR/temple.ini, the scans it names, parts.json, tours.json, pages/ and pictures/. The\n"
+	"Reads DIR/temple.ini, the scans it names (range images become one surface first), parts.json, tours.json, pages/ and pictures/. The\n"
 	"intermediate files stay in DIR/.work: an interrupted build continues where it stopped, and a\n"
 	"later build does only what changed. The first build makes the signing keys (see keys).\n"
 	"Exit status: 0 done, 1 failed (the reason is printed), 2 wrong command line.\n"
@@ -56,6 +56,9 @@ static void print_report(const struct build_report *report)
 	       report->publish.published_triangles, report->source_triangles,
 	       100.0 * (double)report->publish.published_triangles /
 		       (double)report->source_triangles);
+	if (stages[BUILD_SURFACE].name)
+		printf("surface %.1f s%s, ", (double)stages[BUILD_SURFACE].ms / 1000.0,
+		       stages[BUILD_SURFACE].was_there ? " (was there)" : "");
 	printf("hierarchy %.1f s%s, samples %.1f s, publishing %.1f s; all %.1f s\n",
 	       (double)stages[BUILD_HIERARCHY].ms / 1000.0,
 	       stages[BUILD_HIERARCHY].was_there ? " (was there)" : "",

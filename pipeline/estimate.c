@@ -17,6 +17,7 @@
 #include "base/resource_usage.h"
 #include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/import/scan_look.h"
+#include "pipeline/octree/reconstruct.h"
 #include "pipeline/samples/sampling_forecast.h"
 #include "pipeline/samples/sampling_trial.h"
 
@@ -37,6 +38,7 @@ struct looking {
 	struct estimate *out;
 	struct speeds speeds;
 	float low_m[3], high_m[3];
+	struct scans_surface surface;
 	float (*places_m)[3]; /* owned */
 	uint32_t place_count;
 	struct master *master; /* owned; NULL: to be made */
@@ -54,6 +56,10 @@ static int fail(const struct diagnostics *diagnostics, int rc)
 
 /* ---- the scans */
 
+/* Triangles of the surface of a point, with cubes of the default size, where scans overlap as those
+ * of a statue; docs/estimate.md. */
+static const double points_triangles = 0.45;
+
 static void grow_box(struct looking *looking, const float (*places_m)[3], uint32_t count)
 {
 	for (uint32_t i = 0; i < count; i++)
@@ -70,15 +76,22 @@ static int look_at_scan(struct looking *looking, struct scan_look *look, uint32_
 	uint32_t scan_count = looking->content->scan_count, share = PLACES_MAX / scan_count;
 	struct import_options options = looking->content->import;
 	uint32_t step;
-	int rc;
+	int rc = 0;
 
 	options.transform = looking->content->transforms[scan];
-	rc = scan_look(look, looking->content->scans[scan], &options, &diagnostics);
+	if (looking->surface.is_points[scan])
+		rc = range_scan_check(looking->content->scans[scan], &diagnostics);
+	if (rc == 0)
+		rc = scan_look(look, looking->content->scans[scan], &options, &diagnostics);
 	if (rc < 0)
 		return fail(&diagnostics, rc);
+	if (look->is_points) {
+		look->triangle_count = (uint64_t)(points_triangles * (double)look->vertex_count);
+		look->vertex_count = look->triangle_count / 2;
+	}
 	work->triangle_count += look->triangle_count;
 	work->vertex_count += look->vertex_count;
-	work->is_counted &= look->is_counted;
+	work->is_counted &= look->is_counted && !look->is_points;
 	work->is_text |= look->is_text;
 	work->is_foreign |= strcmp(look->format, "PLY") != 0;
 	work->has_pictures |= look->has_pictures;
@@ -120,6 +133,9 @@ static int look_at_scans(struct looking *looking)
 	int rc = look ? 0 : -ENOMEM;
 
 	looking->out->work.is_counted = true;
+	scans_surface(sources_scans(looking->sources), &looking->surface);
+	looking->out->work.surface_points = looking->surface.point_count;
+	looking->out->stages[ESTIMATE_SURFACE].is_done = looking->surface.is_made;
 	for (int k = 0; k < 3; k++) {
 		looking->low_m[k] = INFINITY;
 		looking->high_m[k] = -INFINITY;
@@ -241,6 +257,8 @@ static const double
 	/* reading a triangle, in costs of a triangle of the hierarchy */
 	import_binary = 0.04,
 	import_text = 0.09, import_foreign = 0.14,
+	/* reading a point twice and adding it to the distances around it, likewise */
+	surface_point = 0.5, surface_serial = 0.9,
 	/* a triangle of a real scan to one of the trial's ball */
 	hierarchy_real = 0.68,
 	/* of the scan's triangles, to the power of which that cost falls */
@@ -272,6 +290,22 @@ static const double
 static double spread(const struct looking *looking, double processor_s, double serial)
 {
 	return processor_s * (serial + (1 - serial) / looking->out->jobs);
+}
+
+static void judge_surface(struct looking *looking)
+{
+	/* Bytes of a scan's points, of the distances near a point, and of the file. */
+	enum { RESIDENT = 512 << 20, A_POINT = 40, A_TRIANGLE = 22 };
+	const struct estimate_work *work = &looking->out->work;
+	struct estimate_stage *stage = &looking->out->stages[ESTIMATE_SURFACE];
+	const double points = (double)work->surface_points;
+
+	if (work->surface_points == 0)
+		return;
+	stage->disk_bytes = A_TRIANGLE * work->triangle_count;
+	stage->processor_s = surface_point * looking->speeds.hierarchy_s * points;
+	stage->time_s = spread(looking, stage->processor_s, surface_serial);
+	stage->memory_bytes = (uint64_t)fmin(RESIDENT, A_POINT * points) + (25u << 20);
 }
 
 static void judge_import(struct looking *looking)
@@ -435,6 +469,7 @@ static void judge(struct looking *looking)
 	struct estimate *out = looking->out;
 	uint64_t blocks = blocks_bytes(&out->work);
 
+	judge_surface(looking);
 	judge_import(looking);
 	judge_hierarchy(looking);
 	judge_samples(looking);
@@ -581,7 +616,8 @@ static void print_stage(FILE *to, const char *name, const struct estimate_stage 
 
 void estimate_print(FILE *to, const struct estimate *estimate)
 {
-	static const char *const names[] = { "import", "hierarchy", "samples", "publishing" };
+	static const char *const names[] = { "surface", "import", "hierarchy", "samples",
+					     "publishing" };
 	const struct estimate_work *work = &estimate->work;
 	struct estimate_stage all = { .time_s = estimate->time_s,
 				      .memory_bytes = estimate->memory_bytes,
@@ -591,9 +627,10 @@ void estimate_print(FILE *to, const struct estimate *estimate)
 	for (int i = 0; i < ESTIMATE_STAGES; i++)
 		all.processor_s += estimate->stages[i].processor_s;
 	fprintf(to,
-		"%s%" PRIu64 " triangles%s; %" PRIu32 " sampling points, about %" PRIu64
+		"%s%" PRIu64 " triangles%s%s; %" PRIu32 " sampling points, about %" PRIu64
 		" faces and %" PRIu64 " tiles\n",
 		work->is_counted ? "" : "about ", work->triangle_count,
+		work->surface_points > 0 ? ", mostly of a surface that is made first" : "",
 		work->has_pictures ? " with pictures" : "", work->point_count, work->face_count,
 		work->tile_count);
 	if (work->points_done > 0)
@@ -602,7 +639,8 @@ void estimate_print(FILE *to, const struct estimate *estimate)
 	fprintf(to, "\n%-12s %10s %10s %10s %10s\n", "stage", "time", "processor", "memory",
 		"disk");
 	for (int i = 0; i < ESTIMATE_STAGES; i++)
-		print_stage(to, names[i], &estimate->stages[i]);
+		if (i != ESTIMATE_SURFACE || work->surface_points > 0)
+			print_stage(to, names[i], &estimate->stages[i]);
 	print_stage(to, "all", &all);
 	fprintf(to, "\n");
 	fprintf(to, "release: %s, about %" PRIu64 " triangles; .work keeps %s\n",

@@ -9,6 +9,7 @@
 #include "pipeline/build.h"
 
 enum estimate_stage_name {
+	ESTIMATE_SURFACE, /* only if work.surface_points is not 0 */
 	ESTIMATE_IMPORT,
 	ESTIMATE_HIERARCHY,
 	ESTIMATE_SAMPLES,
@@ -27,6 +28,7 @@ struct estimate_stage {
 /* What is to be done. */
 struct estimate_work {
 	uint64_t triangle_count, vertex_count;
+	uint64_t surface_points; /* of scans that become a surface first; 0: there is none */
 	bool is_counted; /* the files say how many triangles they have, or they were imported */
 	bool is_text, is_foreign, has_pictures;
 	uint32_t point_count, points_done;

@@ -11,6 +11,7 @@
 #include "format/hash.h"
 #include "format/tile.h"
 #include "geometry/substance.h"
+#include "pipeline/content/content_name.h"
 #include "pipeline/import/import.h"
 
 enum {
@@ -60,6 +61,7 @@ struct content {
 	enum tile_effort effort; /* of tiles */
 	uint64_t budget_bytes;   /* of the whole release; 0: none. Not in temple.ini */
 	enum content_quality_rule quality_rule;
+	double cell_mm;           /* leaf cubes of a surface of range images; 0: by the points */
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	bool simplify_features;   /* levels keep feature edges; else by quadrics */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */
@@ -78,10 +80,6 @@ must_check int content_read(struct content *out, const char *folder,
 			    struct diagnostics *diagnostics);
 void content_release(struct content *content); /* Frees the contents. NULL and zeroed are fine. */
 
-/* Returns whether a name is relative, stays below the folder (no "..", absolute path or empty part)
- * and has no control characters or backslashes. Every file name in a content folder's files must
- * satisfy this. */
-bool content_name_is_safe(const char *name);
 /* Builds FOLDER/NAME. -EINVAL: name is not safe. -ENAMETOOLONG. */
 must_check int content_file_path(const struct content *content, const char *name,
 				 char out[CONTENT_PATH_BYTES]);

@@ -74,15 +74,24 @@ static int find_scan(const struct content *content, const struct info_faces *fac
 			   : 0;
 }
 
-/* Counts the faces of a scan. Only PLY has face numbers that mean the same to every program. */
+/* Counts the faces of a scan. Only PLY has face numbers that mean the same to every program. A
+ * surface that is made of scans has the numbers of its own file, so it is made first. */
 static int count_faces(const struct part_faces_all *all, uint32_t scan, uint32_t *out,
 		       struct diagnostics *diagnostics)
 {
 	const struct scans_shape *shape = scans_known_shape(all->scans);
 	const struct content *content = scans_content(all->scans);
 	struct ply *ply = NULL;
+	struct scans_surface surface;
 
 	*out = 0;
+	scans_surface(all->scans, &surface);
+	if (!shape && surface.scan_count > 0) {
+		const int rc = scans_get_shape(all->scans, &shape, diagnostics);
+
+		if (rc < 0)
+			return rc;
+	}
 	if (shape)
 		*out = shape->face_counts[scan];
 	else if (ply_open(&ply, content->scans[scan], NULL) == 0)

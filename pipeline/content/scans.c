@@ -1,26 +1,27 @@
 /* Imports the scans of a content folder into one mesh, and keeps it and its shape in .work. */
 #include "pipeline/content/scans.h"
 
-#include <dirent.h>
 #include <errno.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <sys/stat.h>
 
 #include "base/bytes.h"
 #include "base/log.h"
+#include "pipeline/content/scan_key.h"
+#include "pipeline/content/scan_reports.h"
+#include "pipeline/content/scan_surface.h"
 #include "pipeline/import/mesh_file.h"
+#include "pipeline/octree/reconstruct.h"
 
 /* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files. */
 enum { IMPORT_VERSION = 2, SHAPE_VERSION = 1, KEY_TEXT_MAX = 1 << 26, SHAPE_BYTES_MAX = 4096 };
-enum { REPORTS_VERSION = 1, REPORTS_BYTES_MAX = 4 << 20 };
 
 struct scans {
 	const struct content *content;
 	struct hash key;
+	struct surface_plan plan; /* valid with the key */
+	struct hash surface;      /* key of the surface, if there is one */
 	struct mesh mesh;
 	struct scans_shape shape;
 	bool has_key, has_mesh, has_shape;
@@ -50,88 +51,36 @@ const struct content *scans_content(const struct scans *scans)
 
 /* ---- the key */
 
-/* The file is named relative to the folder, because the folder's own path may change. */
-static void put_file(struct buffer *text, const struct content *content, const char *path)
+static int make_key(struct scans *scans)
 {
-	const char *name = path + strlen(content->folder);
-	struct stat status;
-
-	buffer_put(text, name, strlen(name) + 1);
-	if (stat(path, &status) < 0)
-		return;
-	buffer_put_u64(text, (uint64_t)status.st_size);
-	buffer_put_u64(text, (uint64_t)status.st_mtim.tv_sec);
-	buffer_put_u64(text, (uint64_t)status.st_mtim.tv_nsec);
-}
-
-/* Selects files that a scan may refer to. */
-static int is_companion(const struct dirent *entry)
-{
-	static const char *const extensions[] = { ".mtl", ".jpg", ".jpeg", ".png",
-						  ".bin", ".wrl", ".wrz" };
-	const char *dot = strrchr(entry->d_name, '.');
-
-	for (size_t i = 0; dot && i < ARRAY_COUNT(extensions); i++)
-		if (strcasecmp(dot, extensions[i]) == 0)
-			return 1;
-	return 0;
-}
-
-static int put_companions(struct buffer *text, const struct content *content, const char *scan)
-{
-	char folder[CONTENT_PATH_BYTES], path[CONTENT_PATH_BYTES + 256];
-	const char *slash = strrchr(scan, '/');
-	struct dirent **entries;
-	int count;
-
-	snprintf(folder, sizeof(folder), "%.*s", (int)(slash - scan), scan);
-	count = scandir(folder, &entries, is_companion, alphasort);
-	if (count < 0)
-		return -errno;
-	for (int i = 0; i < count; i++) {
-		snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name);
-		put_file(text, content, path);
-		free(entries[i]);
-	}
-	free(entries);
-	return 0;
-}
-
-static void put_transform(struct buffer *text, const struct transform *transform)
-{
-	for (int k = 0; k < 12; k++)
-		buffer_put_f64(text, transform->rows[k / 4][k % 4]);
-}
-
-static int make_key(const struct content *content, struct hash *out)
-{
+	const struct content *content = scans->content;
 	const struct import_options *import = &content->import;
 	struct buffer text;
-	int rc = 0;
+	int rc;
 
+	surface_plan(&scans->plan, content);
+	rc = surface_key(&scans->surface, &scans->plan, content);
 	buffer_init(&text, KEY_TEXT_MAX);
 	buffer_put_u32(&text, IMPORT_VERSION);
 	buffer_put_u32(&text, import->up);
 	buffer_put_f64(&text, import->metres_per_unit);
 	buffer_put(&text, import->default_colour, sizeof(import->default_colour));
 	buffer_put_u8(&text, import->override_colour);
-	for (uint32_t i = 0; i < content->scan_count && rc == 0; i++) {
-		put_file(&text, content, content->scans[i]);
-		if (content->transforms[i])
-			put_transform(&text, content->transforms[i]);
-		rc = put_companions(&text, content, content->scans[i]);
-	}
+	if (scans->plan.count > 0)
+		buffer_put(&text, scans->surface.bytes, HASH_BYTES);
+	for (uint32_t i = 0; i < content->scan_count && rc == 0; i++)
+		rc = scan_key_put(&text, content, i);
 	if (rc == 0)
 		rc = text.error;
 	if (rc == 0)
-		*out = hash_of(buffer_bytes(&text));
+		scans->key = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
 	return rc;
 }
 
 int scans_key(struct scans *scans, struct hash *out, struct diagnostics *diagnostics)
 {
-	int rc = scans->has_key ? 0 : make_key(scans->content, &scans->key);
+	int rc = scans->has_key ? 0 : make_key(scans);
 
 	if (rc < 0)
 		return diagnostics_add(diagnostics, rc, scans->content->folder, 0,
@@ -163,41 +112,83 @@ static int judge_mix(const struct content *content, const struct mesh *mesh,
 }
 
 /* Tells what is wrong with any scan before the first is imported, which may take long. */
-static int check_all(const struct content *content, struct diagnostics *diagnostics)
+static int check_all(const struct scans *scans, struct diagnostics *diagnostics)
 {
+	const struct content *content = scans->content;
 	int rc = 0;
 
 	for (uint32_t i = 0; i < content->scan_count; i++) {
-		int failed = import_check(content->scans[i], diagnostics);
+		int failed = scans->plan.is_points[i]
+				     ? range_scan_check(content->scans[i], diagnostics)
+				     : import_check(content->scans[i], diagnostics);
 
 		rc = rc == 0 ? failed : rc;
 	}
 	return rc;
 }
 
-static int import_all(struct mesh *out, const struct content *content,
+static int import_surface(struct mesh *out, struct scans *scans, struct import_report *report,
+			  struct diagnostics *diagnostics)
+{
+	const struct import_options *content = &scans->content->import;
+	struct import_options options = { .override_colour = content->override_colour,
+					  .jobs = content->jobs };
+	char path[CONTENT_PATH_BYTES];
+	bool made;
+	int rc = surface_make(path, &made, &scans->plan, scans->surface, scans->content,
+			      diagnostics);
+
+	memcpy(options.default_colour, content->default_colour, sizeof(options.default_colour));
+	return rc < 0 ? rc : import_scan(out, path, &options, report, diagnostics);
+}
+
+/* Imports scan i. Of the scans that became the surface, the first is the whole surface, and the
+ * others are empty. */
+static int import_one(struct mesh *out, struct scans *scans, uint32_t i,
+		      struct import_report *report, struct diagnostics *diagnostics)
+{
+	const struct content *content = scans->content;
+	struct import_options options = content->import;
+	const bool is_part = scans->plan.is_part[i];
+	int rc = 0;
+
+	options.transform = content->transforms[i];
+	*out = (struct mesh){ .scan_count = 1 };
+	*report = (struct import_report){ 0 };
+	if (!is_part)
+		rc = import_scan(out, content->scans[i], &options, report, diagnostics);
+	else if (i == scans->plan.first)
+		rc = import_surface(out, scans, report, diagnostics);
+	if (is_part)
+		snprintf(report->format, sizeof(report->format), "%s",
+			 scans->plan.is_points[i] ? "points" : "mesh");
+	if (rc == 0 && report->warning.first.text[0])
+		log_warn("pipeline", "%s", report->warning.first.text);
+	return rc;
+}
+
+static int import_all(struct mesh *out, struct scans *scans,
 		      struct import_report reports[CONTENT_SCANS_MAX],
 		      struct diagnostics *diagnostics)
 {
+	const struct content *content = scans->content;
 	uint32_t count = 0;
-	int rc = check_all(content, diagnostics);
+	int rc = check_all(scans, diagnostics);
 
 	for (; count < content->scan_count && rc == 0; count++) {
-		struct import_options options = content->import;
 		struct mesh mesh;
 
-		options.transform = content->transforms[count];
-		rc = import_scan(&mesh, content->scans[count], &options, &reports[count],
-				 diagnostics);
+		rc = import_one(&mesh, scans, count, &reports[count], diagnostics);
 		if (rc < 0)
 			break;
-		if (reports[count].warning.first.text[0])
-			log_warn("pipeline", "%s", reports[count].warning.first.text);
 		if (count == 0) {
 			*out = mesh;
 			continue;
 		}
-		rc = mesh_append(out, &mesh);
+		if (mesh.triangle_count > 0)
+			rc = mesh_append(out, &mesh);
+		else
+			out->scans[out->scan_count++] = mesh.scans[0];
 		mesh_finish(&mesh);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, content->scans[count], 0,
@@ -206,123 +197,60 @@ static int import_all(struct mesh *out, const struct content *content,
 	return rc < 0 ? rc : judge_mix(content, out, reports, count, diagnostics);
 }
 
-/* ---- what the import reported */
-
-/* What is kept of the counts, in the order of the file. */
-static uint32_t *count_of(struct import_report *report, int i)
-{
-	struct mesh_repairs *repairs = &report->repairs;
-	uint32_t *const counts[] = {
-		&report->textures,         &report->vertices,          &report->triangles,
-		&repairs->lost_faces,      &repairs->degenerate_faces, &repairs->merged_vertices,
-		&repairs->unused_vertices, &repairs->border_edges,     &repairs->non_manifold_edges,
-		&repairs->turned_faces,    &repairs->turned_edges,     &repairs->place_step,
-		&repairs->place_count,
-	};
-
-	return i < (int)ARRAY_COUNT(counts) ? counts[i] : NULL;
-}
-
-static void encode_report(struct buffer *file, struct import_report *report)
-{
-	const struct mesh_repairs *repairs = &report->repairs;
-
-	buffer_put_string(file, report->format);
-	buffer_put_u8(file, report->had_colours);
-	buffer_put_u64(file, report->file_bytes);
-	for (int i = 0; count_of(report, i); i++)
-		buffer_put_u32(file, *count_of(report, i));
-	for (uint32_t i = 0; i < repairs->place_count; i++) {
-		buffer_put_u8(file, (uint8_t)repairs->places[i].kind);
-		for (int k = 0; k < 3; k++)
-			buffer_put_f32(file, repairs->places[i].place_m[k]);
-	}
-}
-
-static bool decode_report(struct import_report *report, struct reader *reader)
-{
-	struct mesh_repairs *repairs = &report->repairs;
-
-	reader_string(reader, report->format, sizeof(report->format));
-	report->had_colours = reader_u8(reader);
-	report->file_bytes = reader_u64(reader);
-	for (int i = 0; count_of(report, i); i++)
-		*count_of(report, i) = reader_u32(reader);
-	if (reader->failed || repairs->place_count > MESH_FAULT_PLACES_MAX)
-		return false;
-	for (uint32_t i = 0; i < repairs->place_count; i++) {
-		uint8_t kind = reader_u8(reader);
-
-		if (kind >= MESH_FAULTS)
-			return false;
-		repairs->places[i].kind = (enum mesh_fault)kind;
-		for (int k = 0; k < 3; k++)
-			repairs->places[i].place_m[k] = reader_f32(reader);
-	}
-	return !reader->failed;
-}
-
-/* The file contains: version, the key of the scans, the number of reports, and each. */
-static int save_reports(const struct scans *scans, struct import_report *reports)
+int scans_make_surface(struct scans *scans, bool *made, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
-	struct buffer file;
-	int rc = content_work_path(scans->content, "imported", path);
+	struct hash key;
+	int rc = scans_key(scans, &key, diagnostics);
 
-	buffer_init(&file, REPORTS_BYTES_MAX);
-	buffer_put_u32(&file, REPORTS_VERSION);
-	buffer_put(&file, scans->key.bytes, HASH_BYTES);
-	buffer_put_u32(&file, scans->content->scan_count);
-	for (uint32_t i = 0; i < scans->content->scan_count; i++)
-		encode_report(&file, &reports[i]);
-	if (rc == 0)
-		rc = file.error ? file.error : bytes_write_file(buffer_bytes(&file), path);
-	buffer_finish(&file);
-	return rc;
+	*made = false;
+	if (rc < 0 || scans->plan.count == 0 || surface_is_made(scans->surface, scans->content))
+		return rc;
+	rc = check_all(scans, diagnostics);
+	return rc < 0 ? rc
+		      : surface_make(path, made, &scans->plan, scans->surface, scans->content,
+				     diagnostics);
 }
 
-static int decode_reports(struct import_report *reports, struct bytes file, struct hash key)
+void scans_surface(struct scans *scans, struct scans_surface *out)
 {
-	struct reader reader;
-	uint32_t version, count;
-	struct bytes of;
+	struct hash key;
 
-	reader_init(&reader, file);
-	version = reader_u32(&reader);
-	of = reader_bytes(&reader, HASH_BYTES);
-	count = reader_u32(&reader);
-	if (reader.failed || version != REPORTS_VERSION || count > CONTENT_SCANS_MAX ||
-	    memcmp(of.data, key.bytes, HASH_BYTES) != 0)
-		return -ENOENT;
-	for (uint32_t i = 0; i < count; i++)
-		if (!decode_report(&reports[i], &reader))
-			return -ENOENT;
-	return (int)count;
+	*out = (struct scans_surface){ 0 };
+	if (scans_key(scans, &key, NULL) < 0 || scans->plan.count == 0)
+		return;
+	out->scan_count = scans->plan.count;
+	out->point_count = scans->plan.points;
+	memcpy(out->is_points, scans->plan.is_points, sizeof(out->is_points));
+	out->is_made = surface_is_made(scans->surface, scans->content);
 }
+
+/* ---- what the import reported */
 
 int scans_get_reports(struct scans *scans, struct import_report *reports)
 {
 	char path[CONTENT_PATH_BYTES];
-	struct buffer file;
 	struct hash key;
 	int rc = scans_key(scans, &key, NULL);
 
 	if (rc == 0)
 		rc = content_work_path(scans->content, "imported", path);
-	if (rc < 0)
-		return rc;
-	buffer_init(&file, REPORTS_BYTES_MAX);
-	rc = buffer_read_file(&file, path);
-	if (rc == 0)
-		rc = decode_reports(reports, buffer_bytes(&file), key);
-	buffer_finish(&file);
-	return rc;
+	return rc < 0 ? rc : scan_reports_load(reports, path, key);
+}
+
+static int save_reports(const struct scans *scans, struct import_report *reports)
+{
+	char path[CONTENT_PATH_BYTES];
+	int rc = content_work_path(scans->content, "imported", path);
+
+	return rc < 0 ? rc
+		      : scan_reports_save(path, scans->key, reports, scans->content->scan_count);
 }
 
 static int import_and_save(struct scans *scans, const char *path, struct diagnostics *diagnostics)
 {
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
-	int rc = reports ? import_all(&scans->mesh, scans->content, reports, diagnostics) : -ENOMEM;
+	int rc = reports ? import_all(&scans->mesh, scans, reports, diagnostics) : -ENOMEM;
 
 	if (rc == 0) {
 		rc = mesh_file_move(&scans->mesh, scans->key, path);

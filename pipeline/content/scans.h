@@ -17,6 +17,14 @@ struct scans_shape {
 	uint32_t face_counts[CONTENT_SCANS_MAX];
 };
 
+/* The surface that is made of scans which are none (pipeline/content/scan_surface.h). */
+struct scans_surface {
+	uint32_t scan_count;               /* scans that become part of it; 0: there is none */
+	uint64_t point_count;              /* of range images and clouds */
+	bool is_points[CONTENT_SCANS_MAX]; /* whether a scan is one of these */
+	bool is_made;
+};
+
 /* Opens nothing yet. content is borrowed for the lifetime. *out is owned by the caller; NULL on
  * failure. -ENOMEM. */
 must_check int scans_create(struct scans **out, const struct content *content);
@@ -27,6 +35,13 @@ const struct content *scans_content(const struct scans *scans);
  * the files beside them (mtl, pictures, buffers), transforms, and the import options. Equal keys
  * mean equal meshes. Negative errno, with a diagnostic. */
 must_check int scans_key(struct scans *scans, struct hash *out, struct diagnostics *diagnostics);
+
+/* Says what surface is to be made. Reads headers only. */
+void scans_surface(struct scans *scans, struct scans_surface *out);
+/* Makes that surface, unless it is there or none is needed; otherwise the import makes it. All
+ * scans are checked before, as far as their headers tell. *made: it was made. Negative errno, with
+ * a diagnostic. */
+must_check int scans_make_surface(struct scans *scans, bool *made, struct diagnostics *diagnostics);
 
 /* Gets the shape; the scans are imported only if nobody has imported them yet. *out is borrowed for
  * the lifetime. Negative errno, with a diagnostic. */

@@ -102,13 +102,14 @@ struct conversion {
 	double metres_per_unit;
 };
 
+/* Which axis of the file becomes x, y and z. */
+static const int turned_axes[3][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 2, 0 } };
+
 /* Rotates the file's up axis to z. Only rotations are used, so right-handed stays right-handed. */
 static void turn_up(const float from[3], enum import_axis up, double to[3])
 {
-	static const int axis[3][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 2, 0 } };
-
 	for (int k = 0; k < 3; k++)
-		to[k] = from[axis[up][k]];
+		to[k] = from[turned_axes[up][k]];
 	if (up == IMPORT_Y_UP)
 		to[1] = -to[1];
 }
@@ -126,6 +127,23 @@ void import_place(float out_m[3], const float from[3], const struct import_optio
 	turn_up(moved, options->up, turned);
 	for (int k = 0; k < 3; k++)
 		out_m[k] = (float)(turned[k] * scale);
+}
+
+void import_transform(struct transform *out, const struct import_options *options)
+{
+	const double scale = options->metres_per_unit > 0 ? options->metres_per_unit : 1;
+	static const struct transform stays = {
+		{ { 1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } }
+	};
+	const struct transform *placed = options->transform ? options->transform : &stays;
+
+	for (int i = 0; i < 3; i++)
+		for (int k = 0; k < 4; k++) {
+			const double sign = options->up == IMPORT_Y_UP && i == 1 ? -1 : 1;
+
+			out->rows[i][k] =
+				sign * scale * placed->rows[turned_axes[options->up][i]][k];
+		}
 }
 
 static int convert_vertices(void *user, uint32_t first, uint32_t after, uint32_t worker)
@@ -370,6 +388,16 @@ int import_check(const char *path, struct diagnostics *diagnostics)
 	int rc = import_detect(&format, &file_bytes, path, diagnostics);
 
 	return rc < 0 ? rc : check_format(path, format, file_bytes, diagnostics);
+}
+
+bool import_is_points(const char *path, uint64_t *points)
+{
+	enum scan_format format = SCAN_UNKNOWN;
+	uint64_t file_bytes;
+
+	*points = 0;
+	return import_detect(&format, &file_bytes, path, NULL) == 0 && format == SCAN_PLY &&
+	       import_ply_is_points(path, points);
 }
 
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,

@@ -64,6 +64,9 @@ must_check int import_detect(enum scan_format *format, uint64_t *file_bytes, con
 /* Converts a place of the file to metres with z up, as import_scan does. */
 void import_place(float out_m[3], const float from[3], const struct import_options *options);
 
+/* Sets *out to what import_place does, as a matrix, for scans that are read by others. */
+void import_transform(struct transform *out, const struct import_options *options);
+
 /* *out is owned by the caller; it is zeroed on failure. The result always has colours: those of the
  * scan, of its textures, or the default. Open sky is 255 if the scan does not give it. Returns a
  * negative errno, and diagnostics names the file, the place and how to correct it. report may be
@@ -75,6 +78,11 @@ must_check int import_scan(struct mesh *out, const char *path, const struct impo
  * PLY without faces or shorter than its header says, a glTF that requires an extension. Errors as
  * import_scan. */
 must_check int import_check(const char *path, struct diagnostics *diagnostics);
+
+/* Returns whether a file is a PLY of points without faces, so a range image or a cloud, which is no
+ * surface, and sets *points to how many it has, or 0. Reads the header only; a file that cannot be
+ * read is none. */
+bool import_is_points(const char *path, uint64_t *points);
 
 /* Parses the name of an axis: "z", "y" or "x". False: not valid, and *out is unchanged. */
 bool import_axis_named(const char *name, enum import_axis *out);

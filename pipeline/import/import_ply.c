@@ -282,6 +282,20 @@ int import_ply_check(const char *path, struct diagnostics *diagnostics)
 	return rc;
 }
 
+bool import_ply_is_points(const char *path, uint64_t *points)
+{
+	struct ply *ply;
+	bool is_points;
+
+	if (ply_open(&ply, path, NULL) < 0)
+		return false;
+	is_points = ply_summary(ply)->face_count == 0 && ply_summary(ply)->vertex_count > 0;
+	if (is_points)
+		*points = ply_summary(ply)->vertex_count;
+	ply_close(ply);
+	return is_points;
+}
+
 int import_ply(struct mesh *out, const char *path, const struct import_options *options,
 	       struct import_report *report, struct diagnostics *diagnostics)
 {

@@ -11,5 +11,7 @@ must_check int import_ply(struct mesh *out, const char *path, const struct impor
 			  struct import_report *report, struct diagnostics *diagnostics);
 /* Reads only the header of a PLY, and refuses one that has no surface. Errors as import_scan. */
 must_check int import_ply_check(const char *path, struct diagnostics *diagnostics);
+/* import_is_points for a file that is a PLY; *points is set only if it is. */
+bool import_ply_is_points(const char *path, uint64_t *points);
 
 #endif

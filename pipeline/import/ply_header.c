@@ -370,9 +370,10 @@ static void note_why_points_only(struct ply *ply)
 	ply->summary.points_only =
 		ply->summary.grid_cells > 0
 			? "it is one range image (a range_grid of points), not a surface; make one "
-			  "of all aligned range images with gopura-content reconstruct"
-			: "it holds points or lines but no faces; make a surface of it with "
-			  "gopura-content reconstruct";
+			  "of all aligned range images: name them as scans in temple.ini, or use "
+			  "gopura-content reconstruct"
+			: "it holds points or lines but no faces; a cloud with normals becomes a surface as a scan of "
+			  "temple.ini, or by gopura-content reconstruct";
 }
 
 int ply_judge_header(struct ply *ply, struct diagnostics *diagnostics)

@@ -414,10 +414,12 @@ int scan_look(struct scan_look *out, const char *path, const struct import_optio
 {
 	struct look look = { .out = out, .options = options };
 	enum scan_format format;
+	uint64_t points;
 	int rc;
 
 	*out = (struct scan_look){ .format = "" };
-	rc = import_check(path, diagnostics);
+	out->is_points = import_is_points(path, &points);
+	rc = out->is_points ? 0 : import_check(path, diagnostics);
 	if (rc == 0)
 		rc = import_detect(&format, &out->file_bytes, path, diagnostics);
 	if (rc < 0)

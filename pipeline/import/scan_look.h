@@ -13,6 +13,7 @@ struct scan_look {
 	uint64_t file_bytes;
 	/* As the header says, or estimated from the size of the file: at least 1. */
 	uint64_t triangle_count, vertex_count;
+	bool is_points;    /* a PLY without faces, which import_scan refuses; triangle_count is 1 */
 	bool is_counted;   /* the header says how many triangles there are */
 	bool is_text;      /* numbers are text: slower to read */
 	bool has_pictures; /* its colours come from pictures */

@@ -328,6 +328,19 @@ void range_scan_finish(struct range_scan *scan)
 	*scan = (struct range_scan){ 0 };
 }
 
+int range_scan_check(const char *path, struct diagnostics *diagnostics)
+{
+	struct ply *ply;
+	int is_grid, rc = ply_open(&ply, path, diagnostics);
+
+	if (rc < 0)
+		return rc;
+	is_grid = judge_grid(ply_summary(ply), path, diagnostics);
+	rc = is_grid < 0 ? is_grid : judge(ply_summary(ply), is_grid, path, diagnostics);
+	ply_close(ply);
+	return rc;
+}
+
 bool range_sight_named(const char *name, enum range_sight *out)
 {
 	static const char *const names[] = { "auto", "origin", "+x", "+y", "+z", "-x", "-y", "-z" };

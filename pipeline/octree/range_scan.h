@@ -51,6 +51,9 @@ must_check int range_scan_read(struct range_scan *out, const char *path,
 			       struct diagnostics *diagnostics);
 void range_scan_finish(struct range_scan *scan); /* NULL and zeroed are fine */
 
+/* Checks by the header what range_scan_read would refuse. Errors as there. */
+must_check int range_scan_check(const char *path, struct diagnostics *diagnostics);
+
 /* Parses "auto", "origin", "+x" ... "-z". Returns false otherwise; *out is then unchanged. */
 bool range_sight_named(const char *name, enum range_sight *out);
 

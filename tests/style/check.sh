@@ -39,7 +39,7 @@ may_enter() {
 	render/scenery) answer="display lumigraph patches" ;;
 	render/scene) answer="display plan patches lumigraph scenery" ;;
 	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
-	pipeline/content) answer="import" ;;
+	pipeline/content) answer="import octree" ;;
 	pipeline/octree | pipeline/deform) answer="import" ;;
 	pipeline/hierarchy) answer="import material" ;;
 	pipeline/samples) answer="import content material hierarchy" ;;

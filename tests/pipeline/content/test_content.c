@@ -300,7 +300,8 @@ static void every_bad_scan_is_told_before_the_first_is_imported(void **state)
 	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	CHECK(scans_get_mesh(scans, &mesh, &diagnostics) < 0 && diagnostics.count == 2);
-	CHECK(strstr(diagnostics.first.text, "/points.ply: it holds points or lines but no faces"));
+	CHECK(strstr(diagnostics.first.text,
+		     "/points.ply: its points have neither a range_grid nor normals"));
 	CHECK(strstr(diagnostics_get(&diagnostics, 1)->text,
 		     "/notes.txt: not a supported scan format"));
 	diagnostics_finish(&diagnostics);

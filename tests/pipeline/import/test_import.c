@@ -509,7 +509,7 @@ static void refuses_what_is_no_surface(void **state)
 		  "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
 		  "property float z\nelement edge 1\nproperty int vertex1\nproperty int vertex2\n"
 		  "end_header\n0 0 0\n1 0 0\n0 1\n",
-		  "points or lines but no faces; make a surface of it with gopura-content reconstruct" },
+		  "points or lines but no faces; a cloud with normals becomes a surface as a scan" },
 		{ "draco.gltf", "{\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}",
 		  "npx @gltf-transform/cli copy IN.glb OUT.glb" },
 		{ "quantised.gltf",
