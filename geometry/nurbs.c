@@ -22,6 +22,14 @@ const char *nurbs_axis_fault(const struct nurbs_axis *axis)
 	return high > low ? NULL : "has no range between its knots";
 }
 
+void nurbs_even_knots(float *knots, uint32_t order, uint32_t count)
+{
+	for (uint32_t i = 0; i < count + order; i++)
+		knots[i] = i < order   ? 0
+			   : i < count ? (float)(i - order + 1)
+				       : (float)(count - order + 1);
+}
+
 void nurbs_axis_range(const struct nurbs_axis *axis, double *low, double *high)
 {
 	*low = (double)axis->knots[axis->order - 1];

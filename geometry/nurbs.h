@@ -29,6 +29,9 @@ struct nurbs_surface {
 
 /* Returns what is wrong with an axis as a phrase such as "has knots that fall"; NULL: nothing. */
 const char *nurbs_axis_fault(const struct nurbs_axis *axis);
+/* Sets count + order knots, so that a curve begins and ends in its first and last point and its
+ * spans are alike. */
+void nurbs_even_knots(float *knots, uint32_t order, uint32_t count);
 /* Sets the range of the parameter. */
 void nurbs_axis_range(const struct nurbs_axis *axis, double *low, double *high);
 

@@ -10,12 +10,15 @@
 #include "base/spill.h"
 #include "pipeline/deform/bend_split.h"
 #include "pipeline/deform/lattice_step.h"
+#include "pipeline/deform/surface_warp.h"
 
 enum { RANGE_VERTICES = 1 << 14, LINE_PLACES = 257 };
 
 /* More triangles than this are no result but a tolerance that is too small. */
 enum { GROWTH_MAX = 8, TRIANGLES_LEAST = 4000000 };
 
+/* Space that shrinks to less is folded; derivatives of surfaces are no more exact. */
+#define GROWTH_LEAST 1e-6
 /* A tolerance that no eye sees, for those who do not say one. */
 #define TOLERANCE_OF_DIAGONAL 1e-4
 
@@ -140,31 +143,54 @@ static int move_range(void *user, uint32_t first, uint32_t after, uint32_t worke
 	return 0;
 }
 
-static int refuse_fold(const struct deforming *d, const struct deform_step *step,
-		       const double low[3], const double high[3], const struct growth *growth)
+/* A step, ready to be done. */
+struct ready_step {
+	const struct deform_step *step; /* borrowed */
+	struct control_lattice lattice; /* owned */
+	struct surface_warp *surface;   /* owned; NULL: the step is a lattice */
+	double low[3], high[3];         /* of the lattice */
+	struct warp warp;
+};
+
+static int refuse_lattice(const struct deforming *d, const struct ready_step *ready,
+			  const double place[3])
 {
-	const float *at = d->mesh->positions[growth->least_at];
-	const double place[3] = { (double)at[0], (double)at[1], (double)at[2] };
 	struct lattice_blame blame;
-	int rc = lattice_step_blame(&blame, step, low, high, place);
+	int rc = lattice_step_blame(&blame, ready->step, ready->low, ready->high, place);
 
 	if (rc < 0)
 		return rc;
 	return diagnostics_add(d->diagnostics, -EDOM, d->path,
-			       blame.line > 0 ? blame.line : step->line,
+			       blame.line > 0 ? blame.line : ready->step->line,
 			       "the scan would fold over at %g %g %g: move point %d %d %d of level "
 			       "%u less, or its neighbours with it",
 			       place[0], place[1], place[2], blame.point[0], blame.point[1],
 			       blame.point[2], blame.level);
 }
 
+static int refuse_fold(const struct deforming *d, const struct ready_step *ready,
+		       const struct growth *growth)
+{
+	const float *at = d->mesh->positions[growth->least_at];
+	const double place[3] = { (double)at[0], (double)at[1], (double)at[2] };
+	uint32_t point[2] = { 0, 0 };
+
+	if (!ready->surface)
+		return refuse_lattice(d, ready, place);
+	surface_warp_nearest(ready->surface, place, point);
+	return diagnostics_add(
+		d->diagnostics, -EDOM, d->path, ready->step->line,
+		"the scan would fold over at %g %g %g, near point %u of row %u: the "
+		"surface ends before the scan does, or is too far from it for its bend",
+		place[0], place[1], place[2], point[0], point[1]);
+}
+
 /* Checks all vertices, and moves them if none folds. */
-static int move_vertices(struct deforming *d, const struct deform_step *step,
-			 const struct warp *warp, const double low[3], const double high[3])
+static int move_vertices(struct deforming *d, const struct ready_step *ready)
 {
 	const uint32_t count = d->mesh->vertex_count;
 	const uint32_t ranges = (count + RANGE_VERTICES - 1) / RANGE_VERTICES;
-	struct mover m = { d->mesh, warp, calloc(ranges + 1, sizeof(*m.ranges)) };
+	struct mover m = { d->mesh, &ready->warp, calloc(ranges + 1, sizeof(*m.ranges)) };
 	struct growth growth = { INFINITY, -INFINITY, 0 };
 	int rc = m.ranges ? parallel_ranges(d->jobs, count, RANGE_VERTICES, check_range, &m)
 			  : -ENOMEM;
@@ -177,8 +203,8 @@ static int move_vertices(struct deforming *d, const struct deform_step *step,
 		growth.most = fmax(growth.most, m.ranges[i].most);
 	}
 	free(m.ranges);
-	if (rc == 0 && !(growth.least > 0))
-		rc = refuse_fold(d, step, low, high, &growth);
+	if (rc == 0 && !(growth.least > GROWTH_LEAST))
+		rc = refuse_fold(d, ready, &growth);
 	if (rc == 0) {
 		d->report->least_growth = fmin(d->report->least_growth, growth.least);
 		d->report->most_growth = fmax(d->report->most_growth, growth.most);
@@ -231,26 +257,51 @@ static int explain_split(const struct deforming *d, const struct deform_step *st
 	return rc;
 }
 
-static int do_step(struct deforming *d, const struct deform_step *step)
+static int make_ready(struct ready_step *out, const struct deforming *d,
+		      const struct deform_step *step)
 {
-	struct control_lattice lattice;
-	struct warp warp;
-	double low[3], high[3];
+	const struct deform_surface *s = &step->surface;
+	const struct nurbs_surface surface = {
+		{ { s->order[0], s->count[0], s->knots[0] },
+		  { s->order[1], s->count[1], s->knots[1] } },
+		s->points,
+		s->weights,
+	};
 	int rc;
 
-	find_box(d, step, low, high);
-	rc = lattice_step_make(&lattice, step, low, high);
-	if (rc < 0)
+	*out = (struct ready_step){ .step = step };
+	if (s->count[0] > 0) {
+		rc = surface_warp_create(&out->surface, &surface, s->is_flattening);
+		if (rc == 0)
+			out->warp = surface_warp_of(out->surface);
+		if (rc == -EDOM)
+			diagnostics_add(
+				d->diagnostics, rc, d->path, step->line,
+				"the surface has no normal in its middle: spread its points");
 		return rc;
-	warp = lattice_warp(&lattice);
-	rc = explain_split(
-		d, step,
-		bend_split(d->mesh, &warp, d->report->tolerance, triangles_most(d), d->jobs));
+	}
+	find_box(d, step, out->low, out->high);
+	rc = lattice_step_make(&out->lattice, step, out->low, out->high);
 	if (rc == 0)
-		rc = move_vertices(d, step, &warp, low, high);
+		out->warp = lattice_warp(&out->lattice);
+	return rc;
+}
+
+static int do_step(struct deforming *d, const struct deform_step *step)
+{
+	struct ready_step ready;
+	int rc = make_ready(&ready, d, step);
+
 	if (rc == 0)
-		move_lines(d, &warp);
-	control_lattice_finish(&lattice);
+		rc = explain_split(d, step,
+				   bend_split(d->mesh, &ready.warp, d->report->tolerance,
+					      triangles_most(d), d->jobs));
+	if (rc == 0)
+		rc = move_vertices(d, &ready);
+	if (rc == 0)
+		move_lines(d, &ready.warp);
+	control_lattice_finish(&ready.lattice);
+	surface_warp_destroy(ready.surface);
 	return rc;
 }
 

@@ -11,6 +11,7 @@
 #include "base/bytes.h"
 #include "base/json_text.h"
 #include "base/safe_open.h"
+#include "geometry/nurbs.h"
 #include "pipeline/deform/control_lattice.h"
 
 #define COORDINATE_MAX 1e9
@@ -25,10 +26,19 @@ struct plan_reader {
 	uint32_t moves;
 };
 
+static void finish_step(struct deform_step *step)
+{
+	free(step->moves);
+	free(step->surface.points);
+	free(step->surface.weights);
+	free(step->surface.knots[0]);
+	free(step->surface.knots[1]);
+}
+
 void deform_plan_finish(struct deform_plan *plan)
 {
 	for (uint32_t i = 0; i < plan->step_count; i++)
-		free(plan->steps[i].moves);
+		finish_step(&plan->steps[i]);
 	free(plan->steps);
 	*plan = (struct deform_plan){ 0 };
 }
@@ -224,6 +234,100 @@ static int read_moves(struct plan_reader *r, const cJSON *list, struct deform_st
 	return rc;
 }
 
+/* ---- surfaces */
+
+enum { SURFACE_POINTS_MAX = 256 }; /* along an axis */
+
+/* Reads rows of items of width numbers. Returns false if any is missing, or a number is below
+ * least. */
+static bool read_rows(const cJSON *rows, const uint32_t count[2], int width, double least,
+		      float *out)
+{
+	const cJSON *row = rows->child;
+
+	for (uint32_t j = 0; j < count[1]; j++, row = row->next) {
+		const cJSON *item = cJSON_IsArray(row) ? row->child : NULL;
+
+		if (cJSON_GetArraySize(row) != (int)count[0])
+			return false;
+		for (uint32_t i = 0; i < count[0]; i++, item = item->next) {
+			double numbers[3] = { 0 };
+
+			if (width == 3 ? !read_vector(item, numbers) : !is_coordinate(item))
+				return false;
+			if (width == 1)
+				numbers[0] = item->valuedouble;
+			for (int k = 0; k < width; k++, out++) {
+				*out = (float)numbers[k];
+				if (!(numbers[k] > least))
+					return false;
+			}
+		}
+	}
+	return true;
+}
+
+static int read_order(const struct plan_reader *r, const cJSON *json,
+		      const struct deform_step *step, struct deform_surface *out)
+{
+	const cJSON *order = member(json, "order");
+	int numbers[2] = { 3, 3 };
+
+	if (order && !(cJSON_IsArray(order) && cJSON_GetArraySize(order) == 2 &&
+		       read_whole(order->child, 2, NURBS_ORDER_MAX, &numbers[0]) &&
+		       read_whole(order->child->next, 2, NURBS_ORDER_MAX, &numbers[1])))
+		return refuse(r, step->line, "order", "must be two whole numbers, 2 to 12");
+	for (int k = 0; k < 2; k++) {
+		out->order[k] = (uint32_t)numbers[k];
+		if (out->count[k] < out->order[k])
+			return refuse(r, step->line, "points",
+				      "must be at least as many along each axis as the order");
+		out->knots[k] = malloc((out->count[k] + out->order[k]) * sizeof(*out->knots[k]));
+		if (!out->knots[k])
+			return -ENOMEM;
+		nurbs_even_knots(out->knots[k], out->order[k], out->count[k]);
+	}
+	return 0;
+}
+
+static int read_surface(const struct plan_reader *r, const cJSON *json, struct deform_step *step)
+{
+	struct deform_surface *out = &step->surface;
+	const cJSON *points = member(json, "points"), *weights = member(json, "weights");
+	const char *way = cJSON_GetStringValue(member(json, "way"));
+	const int rows = cJSON_IsArray(points) ? cJSON_GetArraySize(points) : 0;
+	const int columns = rows > 0 ? cJSON_GetArraySize(points->child) : 0;
+	int rc;
+
+	if (!cJSON_IsObject(json))
+		return refuse(r, step->line, "surface", "must be {\"points\", \"order\", \"way\"}");
+	rc = check_keys(r, json, " points weights order way ");
+	if (rc < 0)
+		return rc;
+	if (!way || (strcmp(way, "onto") != 0 && strcmp(way, "flat") != 0))
+		return refuse(r, step->line, "way",
+			      "must be \"flat\", which lays flat what lies along the surface, or "
+			      "\"onto\", which bends it so");
+	out->is_flattening = strcmp(way, "flat") == 0;
+	if (rows < 2 || columns < 2 || rows > SURFACE_POINTS_MAX || columns > SURFACE_POINTS_MAX)
+		return refuse(r, step->line, "points",
+			      "must be 2 to 256 rows of as many [x, y, z]");
+	out->count[0] = (uint32_t)columns;
+	out->count[1] = (uint32_t)rows;
+	out->points = malloc((size_t)rows * (size_t)columns * 3 * sizeof(*out->points));
+	out->weights =
+		weights ? malloc((size_t)rows * (size_t)columns * sizeof(*out->weights)) : NULL;
+	if (!out->points || (weights && !out->weights))
+		return -ENOMEM;
+	if (!read_rows(points, out->count, 3, -2 * COORDINATE_MAX, out->points))
+		return refuse(r, step->line, "points", "must be rows of as many [x, y, z]");
+	if (weights && !(cJSON_IsArray(weights) && cJSON_GetArraySize(weights) == rows &&
+			 read_rows(weights, out->count, 1, 1e-6, out->weights)))
+		return refuse(r, step->line, "weights",
+			      "must be as many rows of numbers above 0 as of points");
+	return read_order(r, json, step, out);
+}
+
 /* ---- steps */
 
 static int read_box(const struct plan_reader *r, const cJSON *box, struct deform_step *step)
@@ -248,7 +352,11 @@ static int read_step(struct plan_reader *r, const cJSON *json, struct deform_ste
 	if (!cJSON_IsObject(json))
 		return refuse(r, 1, "steps", "must be a list of {\"lattice\", \"moves\"}");
 	step->line = json_text_line(r->json, json);
-	rc = check_keys(r, json, " lattice box moves ");
+	if (member(json, "surface")) {
+		rc = check_keys(r, json, " surface ");
+		return rc == 0 ? read_surface(r, member(json, "surface"), step) : rc;
+	}
+	rc = check_keys(r, json, " lattice box moves surface ");
 	if (rc < 0)
 		return rc;
 	if (!read_vector(member(json, "lattice"), cells))

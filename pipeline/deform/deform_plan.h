@@ -22,8 +22,16 @@ struct deform_move {
 	double turn_deg;       /* counter-clockwise, seen from the end of the axis */
 };
 
+/* A surface along which the scan is bent; its arrays are owned. */
+struct deform_surface {
+	uint32_t order[2], count[2]; /* along u and v; count 0: the step is a lattice */
+	float *points, *weights, *knots[2];
+	bool is_flattening; /* what lies along the surface is laid flat; otherwise the way back */
+};
+
 struct deform_step {
 	unsigned line;
+	struct deform_surface surface;
 	bool has_box; /* otherwise it is the model's box */
 	double low[3], high[3];
 	uint32_t cells[3];

@@ -35,16 +35,6 @@ struct corner {
 
 /* ---- reading */
 
-/* Knots of a node that gives none: the curve begins and ends in the first and last point, and its
- * spans are alike. */
-static void set_even_knots(float *knots, uint32_t order, uint32_t count)
-{
-	for (uint32_t i = 0; i < count + order; i++)
-		knots[i] = i < order   ? 0
-			   : i < count ? (float)(i - order + 1)
-				       : (float)(count - order + 1);
-}
-
 static int refuse(struct diagnostics *diagnostics, const struct vrml_node *node, const char *what,
 		  const char *cure)
 {
@@ -70,7 +60,7 @@ static int read_axis(struct nurbs_axis *axis, float **own, const struct vrml_nod
 		*own = malloc((size_t)(count + axis->order) * sizeof(**own));
 		if (!*own)
 			return -ENOMEM;
-		set_even_knots(*own, axis->order, count);
+		nurbs_even_knots(*own, axis->order, count);
 	} else if (knots->count != count + axis->order) {
 		return refuse(diagnostics, node, "has a wrong number of knots",
 			      "there are as many as control points and the order together");

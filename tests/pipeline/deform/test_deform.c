@@ -6,6 +6,7 @@
 
 #include "pipeline/deform/bend_split.h"
 #include "pipeline/deform/lattice_step.h"
+#include "pipeline/deform/surface_warp.h"
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 #include "tests/pipeline/shapes.h"
@@ -349,6 +350,110 @@ static void takes_levels_in_any_order(void **state)
 	mesh_finish(&c);
 }
 
+#define ARC                                                                                        \
+	"\"points\": [[[-1.41421356, -1.2, 1.41421356], [0, -1.2, 2.82842712],"                    \
+	" [1.41421356, -1.2, 1.41421356]], [[-1.41421356, 1.2, 1.41421356],"                       \
+	" [0, 1.2, 2.82842712], [1.41421356, 1.2, 1.41421356]]],"                                  \
+	" \"weights\": [[1, 0.70710678, 1], [1, 0.70710678, 1]], \"order\": [3, 2]"
+
+/* A relief on a quarter of a cylinder of radius 2 about the y axis. */
+static struct mesh warped_relief(uint32_t n)
+{
+	struct mesh mesh = shape_relief(n);
+
+	for (uint32_t v = 0; v < mesh.vertex_count; v++) {
+		float *p = mesh.positions[v];
+		const float turn = 0.7f * (p[0] - 1), r = 2 + p[2];
+
+		p[0] = r * sinf(turn);
+		p[1] = p[1] - 1;
+		p[2] = r * cosf(turn);
+	}
+	return mesh;
+}
+
+/* Lengths along the arc stay, and heights over it become heights over its tangent plane. */
+static void lays_a_warped_capture_flat_and_back(void **state)
+{
+	struct mesh relief = shape_relief(40), mesh = warped_relief(40), same = warped_relief(40);
+	const uint32_t vertices = mesh.vertex_count;
+	struct deform_report report;
+	double worst[2] = { 0, 0 };
+	(void)state;
+
+	report = deformed(&mesh, "{\"tolerance\": 0.01, \"steps\": [{\"surface\": {" ARC
+				 ", \"way\": \"flat\"}}]}");
+	for (uint32_t v = 0; v < vertices; v++) {
+		const float *p = mesh.positions[v], *q = relief.positions[v];
+		const float wanted[3] = { 1.4f * (q[0] - 1), q[1] - 1, 2 + q[2] };
+
+		for (int k = 0; k < 3; k++)
+			worst[0] = fmax(worst[0], fabs((double)(p[k] - wanted[k])));
+	}
+	CHECK(report.least_growth > 0.9 && report.most_growth < 1.1);
+	deformed(&mesh,
+		 "{\"tolerance\": 0.01, \"steps\": [{\"surface\": {" ARC ", \"way\": \"onto\"}}]}");
+	for (uint32_t v = 0; v < vertices; v++)
+		for (int k = 0; k < 3; k++)
+			worst[1] =
+				fmax(worst[1],
+				     fabs((double)(mesh.positions[v][k] - same.positions[v][k])));
+	print_message("flat within %.5f, and back within %.5f\n", worst[0], worst[1]);
+	CHECK(worst[0] < 1e-3 && worst[1] < 1e-3);
+	mesh_finish(&relief);
+	mesh_finish(&mesh);
+	mesh_finish(&same);
+}
+
+/* What lies beyond its rim, or beyond its axis, has no place over the surface. */
+static void refuses_a_surface_that_ends_too_early(void **state)
+{
+	struct mesh mesh = warped_relief(10);
+	char message[DIAGNOSTIC_BYTES];
+	struct deform_report report;
+	(void)state;
+
+	for (uint32_t v = 0; v < mesh.vertex_count; v++)
+		mesh.positions[v][1] += 1;
+	CHECK(run(&mesh, "{\"steps\": [\n{\"surface\": {" ARC ", \"way\": \"flat\"}}]}", &report,
+		  message) == -EDOM);
+	CHECK(strstr(message, "bend.json:2: the scan would fold over at ") &&
+	      strstr(message, " of row 1: the surface ends"));
+	mesh_finish(&mesh);
+}
+
+/* A dome cannot be flattened without stretching something, a cylinder can. */
+static void stretches_a_dome_as_little_as_it_can(void **state)
+{
+	static const float flat_knots[] = { 0, 0, 0, 1, 1, 1 };
+	float points[27];
+	const struct nurbs_surface surface = { { { 3, 3, flat_knots }, { 3, 3, flat_knots } },
+					       points,
+					       NULL };
+	struct surface_warp *warp;
+	double least, most;
+	(void)state;
+
+	for (int i = 0; i < 9; i++) {
+		points[3 * i] = (float)(i % 3);
+		points[3 * i + 1] = (float)(i / 3);
+		points[3 * i + 2] = i == 4 ? 1.2f : 0;
+	}
+	CHECK(surface_warp_create(&warp, &surface, true) == 0);
+	surface_warp_stretch(warp, &least, &most);
+	print_message("dome: %.3f to %.3f\n", least, most);
+	CHECK(least > 0.9 && most < 1.1 && most > 1.005);
+	surface_warp_destroy(warp);
+	for (int i = 0; i < 9; i++)
+		points[3 * i + 2] = i % 3 == 1 ? 1.2f : 0;
+	CHECK(surface_warp_create(&warp, &surface, true) == 0);
+	surface_warp_stretch(warp, &least, &most);
+	CHECK(least > 0.9999 && most < 1.0001);
+	surface_warp_destroy(warp);
+	memset(points, 0, sizeof(points));
+	CHECK(surface_warp_create(&warp, &surface, true) == -EDOM && !warp);
+}
+
 /* The head goes below the foot. */
 static void refuses_to_fold_over_and_names_the_point(void **state)
 {
@@ -389,6 +494,22 @@ static void refuses_what_makes_no_sense(void **state)
 		{ STEP("\"lattice\": [1, 1, 1]"), "\"moves\" must be a list" },
 		{ STEP("\"lattice\": [1, 1, 1], \"box\": {\"low\": [0, 0, 0], \"high\": [1, 0, 1]}"),
 		  "\"box\" must be" },
+		{ STEP("\"surface\": 1"), "\"surface\" must be" },
+		{ STEP("\"surface\": {}, \"moves\": []"), "\"moves\" is not one of the keys" },
+		{ STEP("\"surface\": {}"), "\"way\" must be" },
+		{ STEP("\"surface\": {\"way\": \"flat\"}"), "\"points\" must be 2 to 256 rows" },
+		{ STEP("\"surface\": {\"way\": \"flat\", \"points\": [[[0, 0, 0], [1, 0, 0]], "
+		       "[[0, 1, 0]]]}"),
+		  "\"points\" must be rows" },
+		{ STEP("\"surface\": {\"way\": \"flat\", \"points\": [[[0, 0, 0], [1, 0, 0]], "
+		       "[[0, 1, 0], [1, 1, 0]]]}"),
+		  "as many along each axis as the order" },
+		{ STEP("\"surface\": {\"way\": \"flat\", \"order\": [2, 1], \"points\": "
+		       "[[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]}"),
+		  "\"order\" must be" },
+		{ STEP("\"surface\": {\"way\": \"flat\", \"weights\": [[1, 1], [1, 0]], "
+		       "\"points\": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]}"),
+		  "\"weights\" must be" },
 		{ MOVES("1"), "\"moves\" must be a list" },
 		{ MOVES("{\"points\": [0, 0, 0]}"), "exactly one" },
 		{ MOVES("{\"points\": [0, 0, 0], \"by\": [0, 0, 0], \"to\": [0, 0, 0]}"),
@@ -430,6 +551,9 @@ int main(void)
 		cmocka_unit_test(refuses_to_divide_what_floats_cannot),
 		cmocka_unit_test(moves_places_the_same_when_it_is_refined),
 		cmocka_unit_test(takes_levels_in_any_order),
+		cmocka_unit_test(lays_a_warped_capture_flat_and_back),
+		cmocka_unit_test(refuses_a_surface_that_ends_too_early),
+		cmocka_unit_test(stretches_a_dome_as_little_as_it_can),
 		cmocka_unit_test(refuses_to_fold_over_and_names_the_point),
 		cmocka_unit_test(refuses_what_makes_no_sense),
 	};
