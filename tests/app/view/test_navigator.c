@@ -4,6 +4,7 @@
 
 #include "geometry/solid_space.h"
 #include "geometry/vec.h"
+#include "tests/app/view/random_hand.h"
 #include "tests/check.h"
 #include "tests/format/solid_example.h"
 
@@ -303,40 +304,18 @@ static void an_eye_in_stone_comes_out(void **state)
 	CHECK(solid_is_free(&built, nav.eye_m) && vec_distance(nav.eye_m, in_wall) < 2);
 }
 
-static uint32_t seed = 9;
-
-static float random_share(void)
+static void must_be_free(void *data, const struct navigator *nav)
 {
-	seed = seed * 1664525 + 1013904223;
-	return (float)(seed >> 8) / (1 << 24);
-}
-
-/* One drag, pinch, fling or flight as a visitor's hand would make it; no pivot is known to be on a
- * surface. */
-static void play(struct navigator *nav)
-{
-	const float pivot_m[3] = { random_share() * 30 - 15, random_share() * 30 - 15,
-				   random_share() * 20 };
-	const float dx = random_share() * 60 - 30, dy = random_share() * 60 - 30;
-	const int kind = (int)(random_share() * 4);
-
-	navigator_grab(nav, pivot_m);
-	for (int i = 0; kind == 0 && i < 8; i++)
-		navigator_turn(nav, dx, dy, HEIGHT_PX);
-	for (int i = 0; kind == 1 && i < 8; i++)
-		navigator_pinch(nav, 0.8f + random_share() * 0.5f, dx, dy, dx / 300, HEIGHT_PX);
-	if (kind == 2)
-		navigator_fling(nav, 30 * dx, 30 * dy);
-	if (kind == 3)
-		navigator_fly(nav, pivot_m, middle, 200);
-	for (int i = 0; i < 40 && navigator_step(nav, 16, HEIGHT_PX); i++)
-		CHECK(solid_is_free(&built, nav->eye_m));
+	(void)data;
 	CHECK(solid_is_free(&built, nav->eye_m));
 }
 
 static void no_hand_brings_an_eye_into_stone_or_holds_it_there(void **state)
 {
 	const struct navigator_options options = at_temple();
+	struct random_hand hand = {
+		.seed = 9, .low_m = { -15, -15, 0 }, .high_m = { 15, 15, 20 }, .look = must_be_free
+	};
 	float was[3];
 	struct navigator nav;
 	int within = 0, stuck = 0;
@@ -345,7 +324,7 @@ static void no_hand_brings_an_eye_into_stone_or_holds_it_there(void **state)
 	navigator_init(&nav, &options);
 	for (int i = 0; i < 2000; i++) {
 		vec_copy(was, nav.eye_m);
-		play(&nav);
+		random_hand_play(&hand, &nav);
 		within += fabsf(nav.eye_m[0]) < 8 && fabsf(nav.eye_m[1]) < 8 && nav.eye_m[2] < 17;
 		/* Of so many gestures one leads away from any place. */
 		stuck = vec_distance(was, nav.eye_m) > 0.01f ? 0 : stuck + 1;
