@@ -3,8 +3,11 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "base/spill.h"
 #include "geometry/vec.h"
 
@@ -76,22 +79,33 @@ enum { FACE_CELLS_MAX = 1 << 16 };
 
 /* A point in cells from corner 0 0 0. */
 struct splat {
-	const struct range_point *point;
+	struct range_point point;
 	double at[3];
 	double reach_aside, reach; /* along the tangent plane; in any direction */
+	int32_t low[3], high[3];   /* corners within reach */
+};
+
+/* Points are collected, and added by several threads: each has blocks of its own, and goes through
+ * the points in their order. So the result does not depend on the number of threads. */
+enum { BATCH_SPLATS = 1 << 15 };
+
+struct batch {
+	struct corner_field *field;
+	struct splat *splats; /* owned */
+	uint32_t count, workers;
 };
 
 static void add_to_corner(struct corner_field *field, uint32_t block, uint32_t index,
 			  const struct splat *splat, const double from[3])
 {
 	struct field_corner *corner = &field->corners[block][index];
-	const float *normal = splat->point->normal;
+	const float *normal = splat->point.normal;
 	const double out = from[0] * (double)normal[0] + from[1] * (double)normal[1] +
 			   from[2] * (double)normal[2];
 	const double aside = from[0] * from[0] + from[1] * from[1] + from[2] * from[2] - out * out;
 	const float near = 1 - (float)(aside / (splat->reach_aside * splat->reach_aside) +
 				       out * out / (reach_out * reach_out));
-	const float weight = splat->point->weight * near * near * near * near;
+	const float weight = splat->point.weight * near * near * near * near;
 
 	if (!(near > 0))
 		return;
@@ -99,7 +113,7 @@ static void add_to_corner(struct corner_field *field, uint32_t block, uint32_t i
 	corner->weight += weight;
 	for (int k = 0; k < 3 && field->has_colour && corner->weight > 0; k++) {
 		uint16_t *colour = &field->colours[block][index][k];
-		const float step = (256.0f * splat->point->colour[k] - *colour) * weight;
+		const float step = (256.0f * splat->point.colour[k] - *colour) * weight;
 
 		*colour = (uint16_t)lrintf(*colour + step / corner->weight);
 	}
@@ -144,49 +158,113 @@ static int32_t most(int32_t a, int32_t b)
 	return a > b ? a : b;
 }
 
-static int add_point(struct corner_field *field, const struct splat *splat)
+static bool same_blocks(const struct splat *a, const struct splat *b)
 {
-	int32_t low[3], high[3], block[3], first[3], last[3];
+	for (int k = 0; k < 3; k++)
+		if (a->low[k] >> FIELD_BLOCK_SHIFT != b->low[k] >> FIELD_BLOCK_SHIFT ||
+		    a->high[k] >> FIELD_BLOCK_SHIFT != b->high[k] >> FIELD_BLOCK_SHIFT)
+			return false;
+	return true;
+}
+
+/* Visits the blocks within reach of a point. Returns the first error of visit. */
+static int each_block(const struct splat *splat, int (*visit)(void *data, const int32_t block[3]),
+		      void *data)
+{
+	int32_t first[3], last[3], block[3];
+	int rc = 0;
 
 	for (int k = 0; k < 3; k++) {
-		if (!(fabs(splat->at[k]) < 1e9))
-			return -EFBIG;
-		low[k] = (int32_t)ceil(splat->at[k] - splat->reach);
-		high[k] = (int32_t)floor(splat->at[k] + splat->reach);
+		first[k] = splat->low[k] >> FIELD_BLOCK_SHIFT;
+		last[k] = splat->high[k] >> FIELD_BLOCK_SHIFT;
 	}
-	for (block[2] = low[2] >> FIELD_BLOCK_SHIFT; block[2] <= high[2] >> FIELD_BLOCK_SHIFT;
-	     block[2]++)
-		for (block[1] = low[1] >> FIELD_BLOCK_SHIFT;
-		     block[1] <= high[1] >> FIELD_BLOCK_SHIFT; block[1]++)
-			for (block[0] = low[0] >> FIELD_BLOCK_SHIFT;
-			     block[0] <= high[0] >> FIELD_BLOCK_SHIFT; block[0]++) {
-				uint32_t found;
-				int rc = find_or_add(field, block, &found);
+	for (block[2] = first[2]; block[2] <= last[2]; block[2]++)
+		for (block[1] = first[1]; block[1] <= last[1]; block[1]++)
+			for (block[0] = first[0]; block[0] <= last[0] && rc == 0; block[0]++)
+				rc = visit(data, block);
+	return rc;
+}
 
-				if (rc < 0)
-					return rc;
-				for (int k = 0; k < 3; k++) {
-					const int32_t start = block[k] * FIELD_BLOCK_SIDE;
+static int add_block(void *data, const int32_t block[3])
+{
+	uint32_t found;
 
-					first[k] = most(low[k], start);
-					last[k] = least(high[k], start + FIELD_BLOCK_SIDE - 1);
-				}
-				add_to_block(field, found, first, last, splat);
-			}
+	return find_or_add(data, block, &found);
+}
+
+/* What one thread does with one point. */
+struct turn {
+	struct corner_field *field;
+	const struct splat *splat;
+	uint32_t piece, piece_count;
+};
+
+static int splat_block(void *data, const int32_t block[3])
+{
+	const struct turn *turn = data;
+	const uint32_t sum = (uint32_t)block[0] + (uint32_t)block[1] + (uint32_t)block[2];
+	int32_t first[3], last[3];
+
+	if (sum % turn->piece_count != turn->piece)
+		return 0;
+	for (int k = 0; k < 3; k++) {
+		const int32_t start = block[k] * FIELD_BLOCK_SIDE;
+
+		first[k] = most(turn->splat->low[k], start);
+		last[k] = least(turn->splat->high[k], start + FIELD_BLOCK_SIDE - 1);
+	}
+	add_to_block(turn->field, corner_field_find(turn->field, block), first, last, turn->splat);
 	return 0;
 }
 
-static int add_scan_point(struct corner_field *field, const struct range_point *point)
+static int add_splats(void *user, uint32_t piece, uint32_t worker)
 {
-	const double spacing = (double)point->spacing / field->cell;
-	struct splat splat = { .point = point };
+	const struct batch *batch = user;
+	struct turn turn = { batch->field, NULL, piece, batch->workers };
+	int rc = 0;
 
-	for (int k = 0; k < 3; k++)
-		splat.at[k] = (point->at[k] - field->origin[k]) / field->cell;
-	splat.reach_aside =
+	(void)worker;
+
+	for (uint32_t i = 0; i < batch->count && rc == 0; i++) {
+		turn.splat = &batch->splats[i];
+		rc = each_block(turn.splat, splat_block, &turn);
+	}
+	return rc;
+}
+
+/* Adds the collected points. Blocks are made before, because only one thread may do that. */
+static int flush(struct batch *batch)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < batch->count && rc == 0; i++)
+		if (i == 0 || !same_blocks(&batch->splats[i], &batch->splats[i - 1]))
+			rc = each_block(&batch->splats[i], add_block, batch->field);
+	if (rc == 0)
+		rc = parallel_run(batch->workers, batch->workers, add_splats, batch);
+	batch->count = 0;
+	spill_breathe();
+	return rc;
+}
+
+static int add_scan_point(struct batch *batch, const struct range_point *point)
+{
+	const struct corner_field *field = batch->field;
+	const double spacing = (double)point->spacing / field->cell;
+	struct splat *splat = &batch->splats[batch->count];
+
+	splat->point = *point;
+	splat->reach_aside =
 		fmin(reach_aside_most, fmax(reach_aside_least, reach_aside_spacings * spacing));
-	splat.reach = fmax(reach_out, splat.reach_aside);
-	return add_point(field, &splat);
+	splat->reach = fmax(reach_out, splat->reach_aside);
+	for (int k = 0; k < 3; k++) {
+		splat->at[k] = (point->at[k] - field->origin[k]) / field->cell;
+		if (!(fabs(splat->at[k]) < 1e9))
+			return -EFBIG;
+		splat->low[k] = (int32_t)ceil(splat->at[k] - splat->reach);
+		splat->high[k] = (int32_t)floor(splat->at[k] + splat->reach);
+	}
+	return ++batch->count < BATCH_SPLATS ? 0 : flush(batch);
 }
 
 /* ---- faces of meshes */
@@ -220,7 +298,7 @@ static double measure_face(const struct corner_field *field,
 }
 
 /* Adds the place of a face with these shares of its corners. */
-static int add_face_point(struct corner_field *field, const struct range_point *const corners[3],
+static int add_face_point(struct batch *batch, const struct range_point *const corners[3],
 			  const float normal[3], const double shares[3])
 {
 	struct range_point point = { .weight = 1, .spacing = 0 };
@@ -233,11 +311,11 @@ static int add_face_point(struct corner_field *field, const struct range_point *
 		point.colour[k] = (uint8_t)(shares[0] * corners[0]->colour[k] +
 					    shares[1] * corners[1]->colour[k] +
 					    shares[2] * corners[2]->colour[k] + 0.5);
-	return add_scan_point(field, &point);
+	return add_scan_point(batch, &point);
 }
 
 /* Adds places on a face, less than a cell apart: the middle of a small one. */
-static int add_face(struct corner_field *field, const struct range_scan *scan, uint32_t face)
+static int add_face(struct batch *batch, const struct range_scan *scan, uint32_t face)
 {
 	const struct range_point *corners[3];
 	float normal[3];
@@ -247,14 +325,14 @@ static int add_face(struct corner_field *field, const struct range_scan *scan, u
 
 	for (int i = 0; i < 3; i++)
 		corners[i] = &scan->points[scan->triangles[face][i]];
-	longest = fmin(measure_face(field, corners, normal), FACE_CELLS_MAX);
+	longest = fmin(measure_face(batch->field, corners, normal), FACE_CELLS_MAX);
 	n = (uint32_t)ceil(longest / face_step);
 	if (n == 1)
-		return add_face_point(field, corners, normal,
+		return add_face_point(batch, corners, normal,
 				      (double[3]){ 1 / 3., 1 / 3., 1 / 3. });
 	for (uint32_t a = 0; a <= n && n > 0 && rc == 0; a++)
 		for (uint32_t b = 0; a + b <= n && rc == 0; b++)
-			rc = add_face_point(field, corners, normal,
+			rc = add_face_point(batch, corners, normal,
 					    (double[3]){ (double)(n - a - b) / n, (double)a / n,
 							 (double)b / n });
 	return rc;
@@ -262,16 +340,18 @@ static int add_face(struct corner_field *field, const struct range_scan *scan, u
 
 int corner_field_add(struct corner_field *field, const struct range_scan *scan)
 {
-	int rc = 0;
+	struct batch batch = { .field = field,
+			       .splats = malloc(BATCH_SPLATS * sizeof(*batch.splats)),
+			       .workers = parallel_cores() };
+	int rc = batch.splats ? 0 : -ENOMEM;
 
-	for (uint32_t i = 0; i < scan->count && !scan->triangles && rc == 0; i++) {
-		rc = add_scan_point(field, &scan->points[i]);
-		spill_pass(i);
-	}
-	for (uint32_t i = 0; i < scan->triangle_count && rc == 0; i++) {
-		rc = add_face(field, scan, i);
-		spill_pass(i * 64ull);
-	}
+	for (uint32_t i = 0; i < scan->count && !scan->triangles && rc == 0; i++)
+		rc = add_scan_point(&batch, &scan->points[i]);
+	for (uint32_t i = 0; i < scan->triangle_count && rc == 0; i++)
+		rc = add_face(&batch, scan, i);
+	if (rc == 0)
+		rc = flush(&batch);
+	free(batch.splats);
 	return rc;
 }
 

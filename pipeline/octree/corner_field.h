@@ -40,8 +40,9 @@ static inline map_key field_key(const int32_t block[3])
 }
 
 /* A zeroed field with origin, cell and has_colour set is empty. Adds all points of a scan; of a
- * mesh places on its faces instead, so that there are enough of them. -ENOMEM, -ENOSPC; -EFBIG:
- * more than FIELD_BLOCKS_MAX blocks. */
+ * mesh places on its faces instead, so that there are enough of them. All cores work, and the
+ * result does not depend on their number. -ENOMEM, -ENOSPC; -EFBIG: more than FIELD_BLOCKS_MAX
+ * blocks. */
 must_check int corner_field_add(struct corner_field *field, const struct range_scan *scan);
 void corner_field_finish(struct corner_field *field); /* NULL and zeroed are fine */
 
