@@ -86,6 +86,7 @@ void pool_answer_finish(struct pool_answer *answer)
 		pool_patch_finish(&answer->patches[i]);
 	free(answer->patches);
 	label_group_finish(&answer->labels);
+	solid_finish(&answer->solid);
 	answer->rgb = NULL;
 	answer->patches = NULL;
 	answer->patch_count = 0;
@@ -162,6 +163,10 @@ static void do_job(struct job *job, const struct lattice *lattice)
 	case POOL_LABELS:
 		rc = label_group_decode(&job->answer.labels,
 					(struct bytes){ job->object, job->object_bytes });
+		break;
+	case POOL_SOLID:
+		rc = solid_decode(&job->answer.solid,
+				  (struct bytes){ job->object, job->object_bytes });
 		break;
 	}
 	if (rc < 0)

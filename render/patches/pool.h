@@ -1,14 +1,16 @@
-/* Worker threads that decode objects: tiles into pixels, patch groups into meshes with a BVH, and
- * labels. One thread gives and takes; an eventfd reports answers. */
+/* Worker threads that decode objects: tiles into pixels, patch groups into meshes with a BVH,
+ * labels, and the octree of where an eye may be. One thread gives and takes; an eventfd reports
+ * answers. */
 #ifndef GOPURA_RENDER_PATCHES_POOL_H
 #define GOPURA_RENDER_PATCHES_POOL_H
 
 #include "format/label.h"
 #include "format/samples.h"
+#include "format/solid.h"
 #include "format/tile.h"
 #include "geometry/patch_bvh.h"
 
-enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS };
+enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS, POOL_SOLID };
 
 /* A vertex as uploaded to the GPU: 12 bytes. */
 struct packed_vertex {
@@ -32,12 +34,13 @@ struct pool_answer {
 	enum pool_kind kind;
 	uint64_t id; /* as passed to pool_give */
 	int error;   /* 0, -EBADMSG, -ENOMEM */
-	/* tile: SAMPLE_IMAGE_PX square, 3 bytes a pixel. Owned by whoever took the answer, as are
-	 * patches and labels. */
+	/* tile: SAMPLE_IMAGE_PX square, 3 bytes a pixel. Owned by whoever took the answer, as is
+	 * everything else. */
 	uint8_t *rgb;
 	struct pool_patch *patches;
 	uint32_t patch_count;
 	struct label_group labels;
+	struct solid solid;
 };
 
 struct pool;

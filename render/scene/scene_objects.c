@@ -12,7 +12,6 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_labels.h"
 #include "render/scene/scene_scenery.h"
-#include "render/scene/scene_space.h"
 #include "render/scene/scene_stream.h"
 
 enum {
@@ -331,7 +330,7 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 	case OBJECT_SCENERY:
 		return scene->scenery.is_here ? 0 : scene_open_scenery(scene, bytes);
 	case OBJECT_SOLID:
-		return scene_open_solid(scene, bytes);
+		return decode_elsewhere(scene, object, POOL_SOLID, bytes);
 	}
 	return -EBADMSG;
 }

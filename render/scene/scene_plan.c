@@ -13,6 +13,7 @@
 #include "geometry/vec.h"
 #include "render/plan/plan_quality.h"
 #include "render/scene/scene_objects.h"
+#include "render/scene/scene_space.h"
 
 /* A piece is planned again when the eye has moved by this share of its distance. */
 static const float eye_moved = 0.02f;
@@ -35,6 +36,8 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 		if (scene->is_marked)
 			accumulation_break(
 				&scene->accumulation); /* the accumulated sum has the old outline */
+	} else if (rc == 0 && object->kind == OBJECT_SOLID) {
+		scene_put_solid(scene, &answer->solid);
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;

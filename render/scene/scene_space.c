@@ -39,9 +39,12 @@ float scene_clearance(struct scene *scene, const float from_m[3], const float di
 		       : INFINITY;
 }
 
-int scene_open_solid(struct scene *scene, struct bytes object)
+void scene_put_solid(struct scene *scene, struct solid *solid)
 {
-	return scene->solid.nodes ? 0 : solid_decode(&scene->solid, object);
+	solid_finish(&scene->solid);
+	scene->solid = *solid;
+	*solid = (struct solid){ .nodes = NULL };
+	scene->wants_are_stale = true;
 }
 
 const struct solid *scene_solid(const struct scene *scene)

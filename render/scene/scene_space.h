@@ -4,7 +4,7 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Takes the octree of where an eye may be. Returns -EBADMSG if it is damaged, or -ENOMEM. */
-must_check int scene_open_solid(struct scene *scene, struct bytes object);
+/* Takes the octree of where an eye may be, and leaves an empty one. */
+void scene_put_solid(struct scene *scene, struct solid *solid);
 
 #endif
