@@ -12,7 +12,8 @@ tar -x --exclude=./dev -C "$tree" -f "$out/base.tar"
 left_out() { echo "$*" >>"$out/left-out.txt"; }
 
 # ---- remove what only serves to build or administer a Debian system
-mv "$tree/packages.txt" "$out/packages.txt"
+cat "$tree/packages.txt" "$kernel/package.txt" >"$out/packages.txt"
+rm "$tree/packages.txt"
 for path in usr/bin/perl* usr/lib/x86_64-linux-gnu/perl* usr/lib/x86_64-linux-gnu/libperl* usr/share/perl* \
 	usr/bin/apt* usr/bin/dpkg* usr/lib/apt usr/lib/dpkg var/lib/dpkg var/lib/apt var/cache var/log \
 	usr/share/doc usr/share/info usr/share/bash-completion usr/share/zsh usr/share/lintian usr/share/debconf \

@@ -3,6 +3,7 @@
 # programs of this tree. Runs as root or as a user (mmdebstrap then needs user namespaces).
 #
 #   MIRROR=URL      of Debian (default: deb.debian.org); a date of snapshot.debian.org pins every package
+#   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
 #   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, created if missing)
@@ -11,7 +12,8 @@
 #   OUT=FOLDER      instead of build/image
 #
 # Output: base.tar (the packages), tree/ (the complete root), root.squashfs and boot.img (a slot), esp.vfat, gopura.img,
-# gopura.raucb (an update to the same system), and left-out.txt: files of the packages that are not in the image.
+# gopura.raucb (an update to the same system), packages.txt and sbom.spdx.json: what it is made of, and left-out.txt:
+# files of the packages that are not in the image.
 # docs/image.md explains the layout of the disk.
 set -eu
 cd "$(dirname "$0")/.."
@@ -24,15 +26,16 @@ out=$(cd "$out" && pwd)
 say() { echo "image: $*"; }
 list() { grep -v '^#' "$1"; }
 
-# ---- Debian's packages; made again only if their list or the mirror changes
-key=$({ list image/packages; echo "$mirror"; } | sha256sum | cut -c1-16)
-if [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
+# ---- Debian's packages; made again if asked for, or if their list or the mirror changes
+package_form='\${Package}\t\${Version}\t\${Architecture}\t\${source:Package}\t\${source:Version}\n'
+key=$({ list image/packages; echo "$mirror $package_form"; } | sha256sum | cut -c1-16)
+if [ "${FRESH:-no}" = yes ] || [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
 	say "installing packages into base.tar"
 	rm -f "$out/base.key"
 	mmdebstrap --variant=essential --include="$(list image/packages | paste -sd,)" \
 		--aptopt='APT::Install-Recommends "false"' \
 		--dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
-		--customize-hook='chroot "$1" dpkg-query -W -f "\${Package} \${Version}\n" >"$1/packages.txt"' \
+		--customize-hook='chroot "$1" dpkg-query -W -f "'"$package_form"'" >"$1/packages.txt"' \
 		bookworm "$out/base.tar" \
 		"deb $mirror/debian bookworm main" "deb $mirror/debian bookworm-updates main" \
 		"deb $mirror/debian-security bookworm-security main" >"$out/base.log" 2>&1 ||
@@ -60,5 +63,6 @@ version_text=${VERSION:-$(git describe --always --dirty)}
 sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
 export here out keys version_text sequence slot_mib boot_mib esp_mib data_mib
 fakeroot image/assemble.sh
+image/sbom.sh "$out/packages.txt" "$version_text" >"$out/sbom.spdx.json"
 image/bundle.sh "$out"
 say "$(stat -c %s "$out/root.squashfs" | awk '{ printf "a slot has %.0f MB", $1 / 1e6 }'), the image $(du -m "$out/gopura.img" | cut -f1) MiB: $out/gopura.img"
