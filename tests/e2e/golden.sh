@@ -15,7 +15,7 @@ small_release
 # The small temple with the demo's texts (other tests change its own copy) and Arabic ones.
 cp -au "$small/content/." "$work/content/"
 rm -rf "$work/content/pages" "$work/differ"
-cp -r demo/content/pages demo/content/parts.json demo/content/tours.json "$work/content/"
+cp -r demo/content/pages demo/content/parts.json demo/content/tours.json demo/content/scenes.json "$work/content/"
 python3 tests/golden/content.py "$work/content"
 build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >"$work/log" 2>&1 ||
 	{ cat "$work/log"; fail "no release for the pictures"; }

@@ -18,6 +18,10 @@ for tour in tours["tours"]:
     for stop, caption in zip([stop for stop in tour["stops"] if "caption" in stop], words["stops"]):
         stop["caption"]["ar"] = caption
 json.dump(tours, open(f"{folder}/tours.json", "w"), ensure_ascii=False, indent="\t")
+scenes = json.load(open(f"{folder}/scenes.json"))
+for layer in scenes["layers"]:
+    layer["title"]["ar"] = arabic[layer["id"]]
+json.dump(scenes, open(f"{folder}/scenes.json", "w"), ensure_ascii=False, indent="\t")
 shutil.copy("tests/golden/central-tower.ar.html", f"{folder}/pages/")
 ini = open(f"{folder}/temple.ini").read()
 ini = "".join("languages = en km ja ar\n" if line.startswith("languages") else line for line in ini.splitlines(True))

@@ -8,6 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "base/bytes.h"
+#include "pipeline/content/scenes.h"
 #include "pipeline/temple/temple_compose.h"
 #include "tests/check.h"
 
@@ -251,12 +252,32 @@ static void pictures_are_small(void **state)
 	closedir(folder);
 }
 
+/* A roof in the second of two layers, and a door that a touch opens, in every language. */
+static void the_scenes_are_whole(void **state)
+{
+	struct content content = { .folder = "demo/content",
+				   .language_count = ARRAY_COUNT(languages) };
+	struct diagnostics told = { 0 };
+	struct scenery scenery;
+
+	(void)state;
+	for (uint32_t i = 0; i < content.language_count; i++)
+		snprintf(content.languages[i], sizeof(content.languages[i]), "%s", languages[i]);
+	if (scenes_read(&scenery, &content, &told) != 0 || told.count > 0)
+		fail_msg("%s", diagnostics_cause(&told, 0));
+	CHECK(scenery.layer_count == 2 && scenery.title_count == 8);
+	CHECK(scenery.motion_count == 1 && scenery.motions[0].returns && scenery.touch_count == 1);
+	CHECK(scenery_triangles(&scenery) > 10000);
+	scenery_finish(&scenery);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(anchors_lie_on_the_temple_and_in_their_regions),
 		cmocka_unit_test(every_part_has_its_page_in_every_language),
 		cmocka_unit_test(pictures_are_small),
+		cmocka_unit_test(the_scenes_are_whole),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
