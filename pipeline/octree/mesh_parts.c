@@ -53,8 +53,10 @@ int mesh_parts_find(const struct mesh *mesh, uint32_t **out)
 	*out = find_parts(mesh, &parts);
 	if (!*out)
 		return -errno;
-	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
 		(*out)[i] = root_of(*out, i);
+		spill_pass(i);
+	}
 	return 0;
 }
 
@@ -97,15 +99,20 @@ int mesh_parts_drop_small(struct mesh *mesh, double share, uint32_t *dropped)
 	const int rc = numbers ? 0 : -errno;
 
 	*dropped = 0;
-	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++)
+	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
 		parents[i] = root_of(parents, i);
+		spill_pass(i);
+	}
 	for (uint32_t t = 0; t < mesh->triangle_count && rc == 0; t++) {
 		uint32_t *size = &sizes[parents[mesh->triangles[t][0]]];
 
 		largest = ++*size > largest ? *size : largest;
+		spill_pass(t);
 	}
-	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++)
+	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
 		*dropped += parents[i] == i && sizes[i] < share * largest;
+		spill_pass(i);
+	}
 	if (*dropped > 0)
 		compact(mesh, parents, sizes, numbers, share * largest);
 	spill_free(parents);
