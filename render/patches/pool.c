@@ -298,10 +298,7 @@ bool pool_take(struct pool *pool, struct pool_answer *answer)
 	if (!job)
 		return false;
 	*answer = job->answer;
-	job->answer.rgb = NULL;
-	job->answer.patches = NULL;
-	job->answer.patch_count = 0;
-	job->answer.labels = (struct label_group){ 0 };
+	job->answer = (struct pool_answer){ .rgb = NULL };
 	job_destroy(job);
 	pool->busy--;
 	return true;
