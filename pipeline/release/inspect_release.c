@@ -197,31 +197,39 @@ int inspect_object(FILE *to, struct release_reader *reader, struct hash object)
 	return rc == 1 ? 0 : rc;
 }
 
+/* Adds the children of the root page, of which not all are pages. */
+static int add_children(struct walk *walk, const struct place *root, struct bytes bytes)
+{
+	struct place child = { .parent = root->child.hash };
+	struct page page;
+	int rc = page_decode(&page, bytes);
+
+	if (rc < 0)
+		return rc;
+	for (uint32_t c = 0; rc == 0 && c < page.child_count; c++) {
+		child.child = page.children[c];
+		rc = add_place(walk, &child);
+		child.offset += page.children[c].size;
+	}
+	page_finish(&page);
+	return rc;
+}
+
 int inspect_release(FILE *to, struct release_reader *reader)
 {
 	struct walk walk = { .to = to, .reader = reader };
 	int rc = start(&walk, true);
 
+	/* The root and its children. Hundreds of bricks are below them; ask for them by name. */
 	for (size_t i = 0; rc == 0 && i < walk.count; i++) {
-		struct place at = walk.places[i], child = { .parent = at.child.hash };
+		const struct place at = walk.places[i]; /* a copy: the array may move */
 		struct bytes bytes;
-		struct page page;
 
 		rc = read_place(&walk, &at, &bytes);
 		if (rc == 0)
-			rc = page_decode(&page, bytes);
-		if (rc < 0)
-			break;
-		/* The root and its first children. Hundreds of bricks follow; ask for them by
-		 * name. */
-		if (i < 4)
 			rc = inspect_bytes(to, bytes);
-		for (uint32_t c = 0; rc == 0 && i == 0 && c < page.child_count; c++) {
-			child.child = page.children[c];
-			rc = add_place(&walk, &child);
-			child.offset += page.children[c].size;
-		}
-		page_finish(&page);
+		if (rc == 0 && i == 0)
+			rc = add_children(&walk, &at, bytes);
 	}
 	finish(&walk);
 	return rc;

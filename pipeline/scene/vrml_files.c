@@ -7,6 +7,8 @@
 
 #include "pipeline/scene/vrml_text.h"
 
+enum { NAME_BYTES = 256 }; /* of a file in the scan's folder, with its folders */
+
 /* Adds a file; its text is still empty. NULL: no memory, or too many. */
 struct vrml_source *vrml_add_source(struct vrml_parser *parser, const char *path)
 {
@@ -39,16 +41,78 @@ int vrml_source_text(struct vrml_parser *parser, struct vrml_source *source, str
 				       : "too large for this machine's memory");
 }
 
-/* Opens one address of a file: what stands before #. */
-static int open_url(struct vrml_parser *parser, const char *url, char name[256])
+/* Removes the last component of a path, and returns the size of what is left; "": 0. */
+static size_t parent_of(const char *path, size_t size)
 {
-	size_t length = strcspn(url, "#");
+	while (size > 0 && path[size - 1] != '/')
+		size--;
+	return size > 0 ? size - 1 : 0;
+}
 
-	if (length == 0 || length > 255 || !parser->options || !parser->options->open_file)
+/* Appends a component to a path. Returns false if it leads out of the scan's folder, or is too
+ * long. */
+static bool append_component(char name[NAME_BYTES], size_t *size, const char *part, size_t length)
+{
+	if (length == 0 || (length == 1 && part[0] == '.'))
+		return true;
+	if (length == 2 && part[0] == '.' && part[1] == '.') {
+		if (*size == 0)
+			return false;
+		*size = parent_of(name, *size);
+		return true;
+	}
+	if (*size + 1 + length >= NAME_BYTES)
+		return false;
+	if (*size > 0)
+		name[(*size)++] = '/';
+	memcpy(name + *size, part, length);
+	*size += length;
+	return true;
+}
+
+/* Makes the file's name in the scan's folder of an address in a file that may lie deeper. Returns
+ * false if it cannot be in that folder. */
+static bool place_url(const struct vrml_parser *parser, const char *url, size_t length,
+		      char name[NAME_BYTES])
+{
+	const struct vrml_source *by = parser->scope->source;
+	size_t size = 0;
+
+	if (url[0] == '/' || memmem(url, length, "://", 3))
+		return false;
+	if (by != parser->sources[0]) { /* whose path is not one in its folder */
+		size = parent_of(by->path, strlen(by->path));
+		memcpy(name, by->path, size);
+	}
+	for (const char *at = url; at < url + length;) {
+		const size_t rest = (size_t)(url + length - at), part = strcspn(at, "/");
+
+		if (!append_component(name, &size, at, part < rest ? part : rest))
+			return false;
+		at += part < rest ? part + 1 : rest;
+	}
+	name[size] = '\0';
+	return size > 0;
+}
+
+/* Opens an address, without what stands after #: beside the file that names it; else by the same
+ * name in the scan's folder, where open_file looks for what other machines called "C:\\...". */
+static int open_url(struct vrml_parser *parser, const char *url, char name[NAME_BYTES])
+{
+	const struct vrml_options *options = parser->options;
+	const size_t length = strcspn(url, "#");
+	int fd = -ENOENT;
+
+	if (length == 0 || length >= NAME_BYTES || !options || !options->open_file)
 		return -ENOENT;
-	memcpy(name, url, length);
-	name[length] = '\0';
-	return parser->options->open_file(parser->options->data, name);
+	if (place_url(parser, url, length, name))
+		fd = options->open_file(options->data, name);
+	if (fd < 0) {
+		memcpy(name, url, length);
+		name[length] = '\0';
+		fd = options->open_file(options->data, name);
+	}
+	return fd;
 }
 
 static struct vrml_source *find_source(const struct vrml_parser *parser, const char *name)
@@ -84,7 +148,7 @@ static int load_fd(struct vrml_parser *parser, struct vrml_source **out, int fd,
 int vrml_open_source(struct vrml_parser *parser, struct vrml_source **out,
 		     const struct vrml_value *urls, unsigned line)
 {
-	char name[256] = "";
+	char name[NAME_BYTES] = "";
 	int fd = -ENOENT;
 
 	for (uint32_t i = 0; i < urls->count && fd < 0; i++)

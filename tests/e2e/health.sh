@@ -56,6 +56,7 @@ start_kiosk
 build/gopura-health --listen "127.0.0.1:$port" "${options[@]}" >"$work/health.log" 2>&1 &
 health=$!
 becomes 200 '^gopura_kiosk_picture 1' "$url/metrics"
+becomes 200 '^gopura_kiosk_geometry_bytes [1-9]' "$url/metrics" # the first picture is of the streaming mesh
 becomes 200 '^gopura_kiosk_release_sequence 1' "$url/metrics"
 # This machine's GPU and clock may deserve a warning, but nothing is critical.
 becomes 200 '^(ok|warning)$' "$url/health"

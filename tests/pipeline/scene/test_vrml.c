@@ -27,6 +27,13 @@ static int open_beside(void *data, const char *name)
 			"PROTO Other [] { Box {} }\n"
 			"PROTO Slab [ field SFVec3f measure 1 1 1 ] { Box { size IS measure } }\n"
 			"Shape { geometry Box {} }";
+	if (strcmp(name, "deep/er/wall.wrl") == 0)
+		text = HEAD "Inline { url \"./stone.wrl\" } Inline { url \"../../part.wrl\" } "
+			    "Inline { url \"part.wrl\" }";
+	if (strcmp(name, "deep/er/stone.wrl") == 0)
+		text = HEAD "Shape { geometry Box { size 1 1 1 } }";
+	if (strcmp(name, "deep/er/out.wrl") == 0)
+		text = HEAD "Inline { url \"../../../part.wrl\" }";
 	if (strcmp(name, "loop.wrl") == 0)
 		text = HEAD "Inline { url \"loop.wrl\" }";
 	if (!text)
@@ -184,6 +191,8 @@ static void prototypes_files_and_repeated_nodes_are_put_in_place(void **state)
 		    "] Shape { geometry Slab { measure 1 1 7 } }",
 		    7, 1e-5);
 	check_solid(HEAD "Inline { url \"part.wrl\" } Inline { url \"part.wrl\" }", 16, 1e-5);
+	/* Relative to the file that names it, or else to the scan. */
+	check_solid(HEAD "Inline { url \"deep/er/wall.wrl\" }", 1 + 8 + 8, 1e-5);
 	check_solid(HEAD
 		    "Switch { whichChoice 1 choice [ Shape { geometry Sphere {} } Shape { geometry "
 		    "Box {} } ] } Switch { choice Shape { geometry Box {} } } LOD { level [ Shape "
@@ -273,6 +282,8 @@ static void a_fault_names_file_line_and_cure(void **state)
 		{ HEAD "DEF a Group { children USE a }", "a.wrl:2: a contains itself" },
 		{ HEAD "ROUTE a.b TO c.d", "a.wrl:2: ROUTE names a" },
 		{ HEAD "Inline { url \"gone.wrl\" }", "a.wrl:2: it names gone.wrl" },
+		{ HEAD "Inline { url \"deep/er/out.wrl\" }",
+		  "deep/er/out.wrl:2: it names ../../../part.wrl" },
 		{ HEAD "Inline { url \"loop.wrl\" }", "loop.wrl:2: loop.wrl contains itself" },
 		{ HEAD "PROTO P [ ] { P { } } P { }", "a.wrl:2: P is no node" },
 		{ HEAD
