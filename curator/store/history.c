@@ -3,12 +3,14 @@
 
 #include <errno.h>
 #include <git2.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "base/compiler.h"
 #include "base/log.h"
 
 #define MAIN   "refs/heads/main"
@@ -144,6 +146,19 @@ static int put_aside(const char *path, struct diagnostics *diagnostics)
 	return 0;
 }
 
+/* Removes what a program that was killed in the middle of a change has left: libgit2 refuses to
+ * write while there is such a file. */
+static void drop_locks(const char *path)
+{
+	static const char *const names[] = { MAIN, STAGED, "HEAD", "config" };
+	char lock[PATH_MAX];
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (snprintf(lock, sizeof(lock), "%s/%s.lock", path, names[i]) < PATH_MAX &&
+		    unlink(lock) == 0)
+			log_info("curator", "%s of a program that was killed is removed", lock);
+}
+
 int history_open(struct history **out, const char *path, struct diagnostics *diagnostics)
 {
 	struct history *history = calloc(1, sizeof(*history));
@@ -156,6 +171,7 @@ int history_open(struct history **out, const char *path, struct diagnostics *dia
 	if (access(path, F_OK) < 0) {
 		rc = make(history, path, diagnostics);
 	} else {
+		drop_locks(path);
 		rc = from_git(git_repository_open_bare(&history->repository, path), path);
 		if (rc == 0)
 			rc = check(history);

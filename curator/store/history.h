@@ -36,9 +36,10 @@ struct history_version {
 	int64_t time_s;                /* since 1970 */
 };
 
-/* Opens a repository, or makes it. One that is damaged is renamed to PATH.broken-TIME, with a
- * warning, and a new one is made. *out is owned by the caller; NULL on failure, which has a
- * diagnostic. */
+/* Opens a repository, or makes it. The caller is the only one who writes to it: locks that are
+ * there are of a program that was killed, and are removed. A repository that is damaged is renamed
+ * to PATH.broken-TIME, with a warning, and a new one is made. *out is owned by the caller; NULL on
+ * failure, which has a diagnostic. */
 must_check int history_open(struct history **out, const char *path,
 			    struct diagnostics *diagnostics);
 void history_close(struct history *history); /* NULL is fine */

@@ -348,6 +348,22 @@ static void a_kill_between_any_steps_leaves_all_or_nothing(void **state)
 	}
 }
 
+/* A kill between the making of a lock and the change that it is for. */
+static void locks_of_a_killed_program_are_removed(void **state)
+{
+	struct documents *documents = opened();
+
+	(void)state;
+	CHECK(save(documents, "parts.json", "words", "", "ana") == 0);
+	documents_close(documents);
+	write_outside(".curator/history.git/refs/heads/main.lock", "");
+	write_outside(".curator/history.git/refs/gopura/staged.lock", "");
+	documents = opened();
+	CHECK(save(documents, "parts.json", "more", NULL, "ana") == 0);
+	CHECK(has(documents, "parts.json", "more"));
+	documents_close(documents);
+}
+
 static void a_damaged_history_is_put_aside(void **state)
 {
 	struct documents *documents = opened();
@@ -411,6 +427,7 @@ int main(void)
 		TEST(only_documents_are_written),
 		TEST(two_files_change_together_or_not_at_all),
 		TEST(a_kill_between_any_steps_leaves_all_or_nothing),
+		TEST(locks_of_a_killed_program_are_removed),
 		TEST(a_damaged_history_is_put_aside),
 		TEST(a_history_without_its_objects_is_put_aside),
 		TEST(another_process_cannot_open_the_folder),
