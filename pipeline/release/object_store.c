@@ -179,6 +179,17 @@ int object_store_read(struct object_store *store, struct hash hash, struct buffe
 	return rc;
 }
 
+int object_store_read_page(struct object_store *store, const struct page_child *child,
+			   struct page *page, struct buffer *bytes)
+{
+	int rc;
+
+	*page = (struct page){ 0 };
+	buffer_init(bytes, PAGE_BYTES_MAX);
+	rc = object_store_read(store, child->hash, bytes);
+	return rc < 0 ? rc : page_decode(page, buffer_bytes(bytes));
+}
+
 bool object_store_has(const struct object_store *store, struct hash hash)
 {
 	return map_get(&store->index, hash_key(hash)) != MAP_NONE;

@@ -26,6 +26,10 @@ must_check int object_store_add_stretch(struct object_store *store, const char *
 /* Appends the object to out. Returns -ENOENT if there is no such object, or -EBADMSG (logged) if
  * the file changed since (its bytes do not hash to the name any more). */
 must_check int object_store_read(struct object_store *store, struct hash hash, struct buffer *out);
+/* Reads a page into *page, which points into *bytes. The caller finishes both, also on failure;
+ * *page is zeroed before. Errors of object_store_read and page_decode. */
+must_check int object_store_read_page(struct object_store *store, const struct page_child *child,
+				      struct page *page, struct buffer *bytes);
 /* Returns true if the store has the object. */
 bool object_store_has(const struct object_store *store, struct hash hash);
 

@@ -28,16 +28,6 @@ struct labelling {
 	struct progress *progress;
 };
 
-static int read_page(struct object_store *objects, const struct page_child *child,
-		     struct page *page, struct buffer *bytes)
-{
-	int rc;
-
-	buffer_init(bytes, PAGE_BYTES_MAX);
-	rc = object_store_read(objects, child->hash, bytes);
-	return rc < 0 ? rc : page_decode(page, buffer_bytes(bytes));
-}
-
 /* ---- the parts */
 
 /* Lists the parts that have a surface. Returns how many. */
@@ -65,7 +55,7 @@ static int open_info(struct object_store *objects, const struct page_child *chil
 {
 	struct buffer page_bytes, image;
 	struct page page = { 0 };
-	int rc = read_page(objects, child, &page, &page_bytes);
+	int rc = object_store_read_page(objects, child, &page, &page_bytes);
 
 	buffer_init(&image, OBJECT_BYTES_MAX);
 	if (rc == 0)
@@ -119,7 +109,7 @@ static int label_one(void *user, uint32_t piece, uint32_t worker)
 
 static int open_groups(struct labelling *l, const struct page_child *hierarchy)
 {
-	int rc = read_page(l->objects, hierarchy, &l->page, &l->page_bytes);
+	int rc = object_store_read_page(l->objects, hierarchy, &l->page, &l->page_bytes);
 
 	if (rc == 0)
 		rc = hierarchy_decode(&l->hierarchy, l->page.payload);

@@ -68,14 +68,10 @@ static int surface_read(struct surface *surface, struct object_store *objects,
 			const struct page_child *page_name)
 {
 	struct hierarchy hierarchy = { 0 };
-	struct page page = { 0 };
+	struct page page;
 	struct buffer bytes;
-	int rc;
+	int rc = object_store_read_page(objects, page_name, &page, &bytes);
 
-	buffer_init(&bytes, PAGE_BYTES_MAX);
-	rc = object_store_read(objects, page_name->hash, &bytes);
-	if (rc == 0)
-		rc = page_decode(&page, buffer_bytes(&bytes));
 	if (rc == 0)
 		rc = hierarchy_decode(&hierarchy, page.payload);
 	for (uint32_t i = 0; rc == 0 && i < hierarchy.group_count; i++) {

@@ -207,15 +207,11 @@ int stream_cut_read(struct stream_cut *out, struct object_store *objects,
 		    uint32_t most_triangles)
 {
 	struct hierarchy decoded = { 0 };
-	struct page page = { 0 };
+	struct page page;
 	struct buffer bytes;
-	int rc;
+	int rc = object_store_read_page(objects, hierarchy, &page, &bytes);
 
 	*out = (struct stream_cut){ 0 };
-	buffer_init(&bytes, PAGE_BYTES_MAX);
-	rc = object_store_read(objects, hierarchy->hash, &bytes);
-	if (rc == 0)
-		rc = page_decode(&page, buffer_bytes(&bytes));
 	if (rc == 0)
 		rc = hierarchy_decode(&decoded, page.payload);
 	if (rc == 0)
