@@ -4,7 +4,7 @@
 # "open"), how Debian treats it, title.
 #
 # PACKAGES as in sbom.sh. TRACKER is the file or address of the tracker's data:
-# https://security-tracker.debian.org/tracker/data/json (60 MB). Exit status: 0 none that an update would mend; 3 at least
+# https://security-tracker.debian.org/tracker/data/json. Exit status: 0 none that an update would mend; 3 at least
 # one: build the image anew; 1 the data cannot be read.
 set -eu
 [ $# = 2 ] || { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }

@@ -444,13 +444,12 @@ def measure(port, count, seconds=20):
         thread.start()
     for thread in threads:
         thread.join()
-    median, worst = statistics.median, max
     print(json.dumps({
         "curators": count, "triangles": row[0]["triangles"],
-        "moving_ms": [round(median(one["moving"])) for one in row],
-        "moving_worst_ms": [round(worst(one["moving"])) for one in row],
-        "sharp_ms": [round(median(one["sharp"])) for one in row],
-        "sharp_worst_ms": [round(worst(one["sharp"])) for one in row],
+        "moving_ms": [round(statistics.median(one["moving"])) for one in row],
+        "moving_worst_ms": [round(max(one["moving"])) for one in row],
+        "sharp_ms": [round(statistics.median(one["sharp"])) for one in row],
+        "sharp_worst_ms": [round(max(one["sharp"])) for one in row],
         "pictures": [len(one["moving"]) + len(one["sharp"]) for one in row],
         "lasso_ms": [round(one["tools"][0]) for one in row],
         "heavy_ms": [round(one["tools"][1]) for one in row]}))
