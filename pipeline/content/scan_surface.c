@@ -28,8 +28,7 @@ void surface_plan(struct surface_plan *out, const struct content *content)
 
 		out->is_points[i] = import_is_points(content->scans[i], &points);
 		out->points += points;
-		out->is_part[i] = out->is_points[i];
-		if (out->is_part[i] && out->count++ == 0)
+		if (out->is_points[i] && out->count++ == 0)
 			out->first = i;
 	}
 }
@@ -45,7 +44,7 @@ int surface_key(struct hash *out, const struct surface_plan *plan, const struct 
 	buffer_put_u32(&text, content->import.up);
 	buffer_put_f64(&text, content->import.metres_per_unit);
 	for (uint32_t i = 0; i < content->scan_count && rc == 0; i++)
-		if (plan->is_part[i])
+		if (plan->is_points[i])
 			rc = scan_key_put(&text, content, i);
 	if (rc == 0)
 		rc = text.error;
@@ -123,7 +122,7 @@ static int make(const struct surface_plan *plan, struct hash key, const char *pa
 	int rc = parts ? 0 : -ENOMEM;
 
 	for (uint32_t i = 0; rc == 0 && i < content->scan_count; i++)
-		if (plan->is_part[i])
+		if (plan->is_points[i])
 			add_points(parts, content, i);
 	if (rc == 0)
 		rc = reconstruct(&mesh, parts->scans, parts->count, &options, &report, diagnostics);

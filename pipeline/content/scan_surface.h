@@ -11,8 +11,7 @@ struct surface_plan {
 	uint32_t count; /* 0: no surface is made */
 	uint32_t first; /* the lowest of them; valid if count > 0 */
 	uint64_t points;
-	bool is_points[CONTENT_SCANS_MAX]; /* a range image or a cloud */
-	bool is_part[CONTENT_SCANS_MAX];
+	bool is_points[CONTENT_SCANS_MAX]; /* a range image or a cloud: part of the surface */
 };
 
 /* Looks at the headers of the scans. One that cannot be read is taken for a mesh. */

@@ -149,19 +149,18 @@ static int import_one(struct mesh *out, struct scans *scans, uint32_t i,
 {
 	const struct content *content = scans->content;
 	struct import_options options = content->import;
-	const bool is_part = scans->plan.is_part[i];
+	const bool is_points = scans->plan.is_points[i];
 	int rc = 0;
 
 	options.transform = content->transforms[i];
 	*out = (struct mesh){ .scan_count = 1 };
 	*report = (struct import_report){ 0 };
-	if (!is_part)
+	if (!is_points)
 		rc = import_scan(out, content->scans[i], &options, report, diagnostics);
 	else if (i == scans->plan.first)
 		rc = import_surface(out, scans, report, diagnostics);
-	if (is_part)
-		snprintf(report->format, sizeof(report->format), "%s",
-			 scans->plan.is_points[i] ? "points" : "mesh");
+	if (is_points)
+		snprintf(report->format, sizeof(report->format), "points");
 	if (rc == 0 && report->warning.first.text[0])
 		log_warn("pipeline", "%s", report->warning.first.text);
 	return rc;
