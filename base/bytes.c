@@ -17,6 +17,11 @@
 
 #include "base/safe_open.h"
 
+bool bytes_equal(struct bytes a, struct bytes b)
+{
+	return a.size == b.size && (a.size == 0 || memcmp(a.data, b.data, a.size) == 0);
+}
+
 void buffer_init(struct buffer *buffer, size_t ceiling_bytes)
 {
 	*buffer = (struct buffer){ .ceiling = ceiling_bytes };

@@ -16,6 +16,9 @@ struct bytes {
 	size_t size;
 };
 
+/* Returns whether both hold the same bytes. */
+bool bytes_equal(struct bytes a, struct bytes b);
+
 /* Owned by its holder; buffer_finish releases it. */
 struct buffer {
 	uint8_t *data;

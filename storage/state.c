@@ -35,6 +35,8 @@ static const char schema[] =
 	" sequence INTEGER, release BLOB, trust BLOB, tries INTEGER, previous_root BLOB,"
 	" previous_root_bytes INTEGER, previous_sequence INTEGER, previous_release BLOB,"
 	" check_hash BLOB);"
+	"CREATE TABLE IF NOT EXISTS tuf (id INTEGER PRIMARY KEY CHECK (id = 1), changes INTEGER,"
+	" root BLOB, timestamp BLOB, snapshot BLOB, targets BLOB, check_hash BLOB);"
 	"COMMIT";
 
 /* ---- the database */
@@ -76,6 +78,39 @@ static int take_row(struct record *out, sqlite3_stmt *row)
 	return memcmp(check.bytes, sqlite3_column_blob(row, 12), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
 
+static int take_tuf(struct record *out, sqlite3_stmt *row)
+{
+	struct hash check;
+
+	out->tuf.changes = (uint64_t)sqlite3_column_int64(row, 0);
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		take_column(&out->tuf.files[i], row, 1 + i);
+	if (sqlite3_column_bytes(row, 5) != HASH_BYTES || record_error(out) < 0 ||
+	    record_tuf_hash(&check, out) < 0)
+		return -EBADMSG;
+	return memcmp(check.bytes, sqlite3_column_blob(row, 5), HASH_BYTES) == 0 ? 0 : -EBADMSG;
+}
+
+/* Without a row, nothing is read. -EBADMSG: it is damaged. */
+static int read_tuf(struct record *out, sqlite3 *db)
+{
+	sqlite3_stmt *select = NULL;
+	int code = sqlite3_prepare_v2(
+		db,
+		"SELECT changes, root, timestamp, snapshot, targets, check_hash FROM tuf"
+		" WHERE id = 1",
+		-1, &select, NULL);
+	int rc;
+
+	if (code == SQLITE_ERROR) /* no such column: the table is not ours */
+		return -EBADMSG;
+	if (code == SQLITE_OK)
+		code = sqlite3_step(select);
+	rc = code == SQLITE_ROW ? take_tuf(out, select) : db_code(code);
+	sqlite3_finalize(select);
+	return rc;
+}
+
 /* -ENOENT: the database is new and has no record. -EBADMSG: the record is damaged. */
 static int read_record(struct record *out, sqlite3 *db)
 {
@@ -98,7 +133,7 @@ static int read_record(struct record *out, sqlite3 *db)
 	else if (code == SQLITE_DONE)
 		rc = -ENOENT;
 	sqlite3_finalize(select);
-	return rc;
+	return rc == 0 ? read_tuf(out, db) : rc;
 }
 
 static void bind_release(sqlite3_stmt *insert, int first, const struct kept_release *release)
@@ -110,7 +145,7 @@ static void bind_release(sqlite3_stmt *insert, int first, const struct kept_rele
 			  SQLITE_STATIC);
 }
 
-static int write_record(sqlite3 *db, const struct record *record)
+static int write_row(sqlite3 *db, const struct record *record)
 {
 	sqlite3_stmt *insert = NULL;
 	struct hash check;
@@ -134,6 +169,50 @@ static int write_record(sqlite3 *db, const struct record *record)
 	if (rc < 0)
 		rc = db_error(db, sqlite3_extended_errcode(db), "writing the kiosk's state");
 	sqlite3_finalize(insert);
+	return rc;
+}
+
+static int write_tuf(sqlite3 *db, const struct record *record)
+{
+	sqlite3_stmt *insert = NULL;
+	struct hash check;
+	int rc = record_tuf_hash(&check, record);
+
+	if (rc == 0)
+		rc = db_code(sqlite3_prepare_v2(
+			db, "INSERT OR REPLACE INTO tuf VALUES (1, ?, ?, ?, ?, ?, ?)", -1, &insert,
+			NULL));
+	if (rc < 0)
+		return rc;
+	sqlite3_bind_int64(insert, 1, (sqlite3_int64)record->tuf.changes);
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		sqlite3_bind_blob(insert, 2 + i, record->tuf.files[i].data,
+				  (int)record->tuf.files[i].size, SQLITE_STATIC);
+	sqlite3_bind_blob(insert, 6, check.bytes, HASH_BYTES, SQLITE_STATIC);
+	rc = db_run(insert);
+	if (rc < 0)
+		rc = db_error(db, sqlite3_extended_errcode(db), "writing the trusted metadata");
+	sqlite3_finalize(insert);
+	return rc;
+}
+
+/* Writes the record, and the files of The Update Framework if they changed, together. */
+static int write_record(sqlite3 *db, const struct record *record, bool with_tuf)
+{
+	int rc;
+
+	if (!with_tuf)
+		return write_row(db, record);
+	rc = db_exec(db, "BEGIN IMMEDIATE");
+	if (rc < 0)
+		return rc;
+	rc = write_row(db, record);
+	if (rc == 0)
+		rc = write_tuf(db, record);
+	if (rc == 0)
+		rc = db_exec(db, "COMMIT");
+	if (rc < 0 && !sqlite3_get_autocommit(db) && db_exec(db, "ROLLBACK") < 0)
+		log_debug("storage", "a change of the state could not be taken back");
 	return rc;
 }
 
@@ -180,16 +259,22 @@ static uint32_t root_version(const struct record *record)
 }
 
 /* An older database that was put back must not lower the floors, so the floors of the second copy
- * count too. But a second copy with an older trust root must not raise them: the newer root may
- * have cleared the floors, and the power may have failed between the two writes. */
+ * count too, and so do its files of The Update Framework. But a second copy with an older trust
+ * root, or with older such files, must not raise the floors: the newer root may have cleared them,
+ * and the power may have failed between the two writes. */
 static void compare_with_second(struct state *state)
 {
 	struct record second;
 
 	record_init(&second);
 	if (record_read_second(&second, state->path) == 0 &&
-	    root_version(&second) >= root_version(&state->record))
+	    root_version(&second) >= root_version(&state->record) &&
+	    second.tuf.changes >= state->record.tuf.changes) {
 		raise_floors(&state->record, &second);
+		/* The database is always written first, so this one is an older one put back. */
+		if (second.tuf.changes > state->record.tuf.changes)
+			record_copy_tuf(&state->record, &second);
+	}
 	record_finish(&second);
 }
 
@@ -223,7 +308,7 @@ static void recover(struct state *state, int rc)
 	} else {
 		log_warn("storage", "the state was restored from %s.second", state->path);
 	}
-	if (state->db && write_record(state->db, &state->record) < 0)
+	if (state->db && write_record(state->db, &state->record, true) < 0)
 		close_db(state);
 }
 
@@ -289,6 +374,15 @@ int state_trust(const struct state *state, struct bytes *out)
 	return out->size ? 0 : -ENOENT;
 }
 
+int state_tuf(const struct state *state, struct state_tuf *out)
+{
+	const struct buffer *files = state->record.tuf.files;
+
+	*out = (struct state_tuf){ buffer_bytes(&files[0]), buffer_bytes(&files[1]),
+				   buffer_bytes(&files[2]), buffer_bytes(&files[3]) };
+	return out->root.size ? 0 : -ENOENT;
+}
+
 uint64_t state_sequence_floor(const struct state *state)
 {
 	return state->record.sequence_floor;
@@ -305,7 +399,9 @@ static int change(struct state *state, struct record *next)
 	int rc = record_error(next);
 
 	if (rc == 0)
-		rc = state->db ? write_record(state->db, next) : -EIO;
+		rc = state->db ? write_record(state->db, next,
+					      next->tuf.changes != state->record.tuf.changes)
+			       : -EIO;
 	if (rc < 0) {
 		record_finish(next);
 		return rc;
@@ -385,6 +481,14 @@ int state_fall_back(struct state *state)
 	return change(state, &next);
 }
 
+static void clear_floors(struct record *record, enum state_clear clear)
+{
+	if (clear & STATE_CLEAR_SEQUENCE_FLOOR)
+		record->sequence_floor = 0;
+	if (clear & STATE_CLEAR_TIME_FLOOR)
+		record_set_time_floor(record, 0);
+}
+
 int state_set_trust(struct state *state, struct bytes file, enum state_clear clear)
 {
 	struct record next;
@@ -392,10 +496,23 @@ int state_set_trust(struct state *state, struct bytes file, enum state_clear cle
 	record_copy(&next, &state->record);
 	buffer_clear(&next.trust);
 	buffer_put(&next.trust, file.data, file.size);
-	if (clear & STATE_CLEAR_SEQUENCE_FLOOR)
-		next.sequence_floor = 0;
-	if (clear & STATE_CLEAR_TIME_FLOOR)
-		record_set_time_floor(&next, 0);
+	clear_floors(&next, clear);
+	return change(state, &next);
+}
+
+int state_set_tuf(struct state *state, const struct state_tuf *tuf, enum state_clear clear)
+{
+	const struct bytes files[KEPT_TUF_FILES] = { tuf->root, tuf->timestamp, tuf->snapshot,
+						     tuf->targets };
+	struct record next;
+
+	record_copy(&next, &state->record);
+	next.tuf.changes++;
+	for (int i = 0; i < KEPT_TUF_FILES; i++) {
+		buffer_clear(&next.tuf.files[i]);
+		buffer_put(&next.tuf.files[i], files[i].data, files[i].size);
+	}
+	clear_floors(&next, clear);
 	return change(state, &next);
 }
 

@@ -24,6 +24,11 @@ struct state_release {
 	struct bytes file; /* release.json as received; borrowed */
 };
 
+/* The metadata of The Update Framework that was accepted last (docs/tuf.md); borrowed. */
+struct state_tuf {
+	struct bytes root, timestamp, snapshot, targets; /* as received; empty: none yet */
+};
+
 /* path is copied. *out is owned by the caller. The only error is -ENOMEM: if the disk fails, the
  * state is what could be read (or empty), and changes are refused with -EIO. */
 must_check int state_create(struct state **out, const char *path);
@@ -40,6 +45,9 @@ uint32_t state_tries(const struct state *state);
 /* Reads the file of the trust root in use (root/N.json as received); borrowed. -ENOENT: none
  * yet. */
 must_check int state_trust(const struct state *state, struct bytes *out);
+/* Reads the trusted metadata of The Update Framework; borrowed until the next change. -ENOENT:
+ * there is no root, so this terminal follows the other form. */
+must_check int state_tuf(const struct state *state, struct state_tuf *out);
 /* Returns the lowest sequence number that may be activated; 0 at first. */
 uint64_t state_sequence_floor(const struct state *state);
 /* Returns the earliest time it can be now according to signed metadata, in seconds since 1970; 0 at
@@ -68,6 +76,10 @@ enum state_clear {
 /* Copies the trust root's file and clears the given floors in the same transaction. Errors as for
  * state_activate, without -ESTALE. */
 must_check int state_set_trust(struct state *state, struct bytes file, enum state_clear clear);
+/* Copies the trusted metadata of The Update Framework, which needs a root, and clears the given
+ * floors in the same transaction. Errors as for state_set_trust. */
+must_check int state_set_tuf(struct state *state, const struct state_tuf *tuf,
+			     enum state_clear clear);
 /* Raises the time floor; a lower value does nothing. It is written only when it rises by an hour or
  * more, to spare the flash memory. Until then the higher floor is kept in memory only. */
 must_check int state_raise_time_floor(struct state *state, int64_t at_least_s);

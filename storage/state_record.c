@@ -6,7 +6,11 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { RECORD_BYTES_MAX = 3 * STATE_FILE_BYTES_MAX + 256, RECORD_VERSION = 2 };
+enum {
+	RECORD_BYTES_MAX = (3 + KEPT_TUF_FILES) * STATE_FILE_BYTES_MAX + 256,
+	RECORD_VERSION = 3,
+	HASHED_VERSION = 2, /* what record_hash says, for programs that know no later one */
+};
 
 void record_init(struct record *record)
 {
@@ -14,6 +18,8 @@ void record_init(struct record *record)
 	buffer_init(&record->release.file, STATE_FILE_BYTES_MAX);
 	buffer_init(&record->previous.file, STATE_FILE_BYTES_MAX);
 	buffer_init(&record->trust, STATE_FILE_BYTES_MAX);
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		buffer_init(&record->tuf.files[i], STATE_FILE_BYTES_MAX);
 }
 
 void record_finish(struct record *record)
@@ -21,10 +27,15 @@ void record_finish(struct record *record)
 	buffer_finish(&record->release.file);
 	buffer_finish(&record->previous.file);
 	buffer_finish(&record->trust);
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		buffer_finish(&record->tuf.files[i]);
 }
 
 int record_error(const struct record *record)
 {
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		if (record->tuf.files[i].error)
+			return record->tuf.files[i].error;
 	return record->release.file.error    ? record->release.file.error
 	       : record->previous.file.error ? record->previous.file.error
 					     : record->trust.error;
@@ -55,6 +66,17 @@ void record_copy(struct record *out, const struct record *from)
 	copy_file(&out->release.file, &from->release.file);
 	copy_file(&out->previous.file, &from->previous.file);
 	copy_file(&out->trust, &from->trust);
+	for (int i = 0; i < KEPT_TUF_FILES; i++)
+		copy_file(&out->tuf.files[i], &from->tuf.files[i]);
+}
+
+void record_copy_tuf(struct record *record, const struct record *from)
+{
+	record->tuf.changes = from->tuf.changes;
+	for (int i = 0; i < KEPT_TUF_FILES; i++) {
+		buffer_clear(&record->tuf.files[i]);
+		buffer_put(&record->tuf.files[i], from->tuf.files[i].data, from->tuf.files[i].size);
+	}
 }
 
 static void release_encode(struct buffer *out, const struct kept_release *release)
@@ -66,10 +88,10 @@ static void release_encode(struct buffer *out, const struct kept_release *releas
 	buffer_put(out, release->file.data, release->file.size);
 }
 
-static void record_encode(struct buffer *out, const struct record *record)
+static void record_encode(struct buffer *out, const struct record *record, uint32_t version)
 {
 	buffer_put(out, "GSta", 4);
-	buffer_put_u32(out, RECORD_VERSION);
+	buffer_put_u32(out, version);
 	buffer_put_u64(out, record->sequence_floor);
 	buffer_put_u64(out, (uint64_t)record->stored_time_floor_s);
 	release_encode(out, &record->release);
@@ -77,6 +99,15 @@ static void record_encode(struct buffer *out, const struct record *record)
 	buffer_put(out, record->trust.data, record->trust.size);
 	buffer_put_u32(out, record->tries);
 	release_encode(out, &record->previous);
+}
+
+static void tuf_encode(struct buffer *out, const struct kept_tuf *tuf)
+{
+	buffer_put_u64(out, tuf->changes);
+	for (int i = 0; i < KEPT_TUF_FILES; i++) {
+		buffer_put_u32(out, (uint32_t)tuf->files[i].size);
+		buffer_put(out, tuf->files[i].data, tuf->files[i].size);
+	}
 }
 
 static void get_sized(struct buffer *out, struct reader *reader)
@@ -126,6 +157,11 @@ static int record_decode(struct record *out, struct bytes file)
 		out->tries = reader_u32(&reader);
 		release_decode(&out->previous, &reader);
 	}
+	if (version > 2) {
+		out->tuf.changes = reader_u64(&reader);
+		for (int i = 0; i < KEPT_TUF_FILES; i++)
+			get_sized(&out->tuf.files[i], &reader);
+	}
 	return reader.failed || reader_left(&reader) || record_error(out) < 0 ? -EBADMSG : 0;
 }
 
@@ -135,7 +171,20 @@ int record_hash(struct hash *out, const struct record *record)
 	int rc;
 
 	buffer_init(&encoded, RECORD_BYTES_MAX);
-	record_encode(&encoded, record);
+	record_encode(&encoded, record, HASHED_VERSION);
+	rc = encoded.error;
+	*out = hash_of(buffer_bytes(&encoded));
+	buffer_finish(&encoded);
+	return rc;
+}
+
+int record_tuf_hash(struct hash *out, const struct record *record)
+{
+	struct buffer encoded;
+	int rc;
+
+	buffer_init(&encoded, RECORD_BYTES_MAX);
+	tuf_encode(&encoded, &record->tuf);
 	rc = encoded.error;
 	*out = hash_of(buffer_bytes(&encoded));
 	buffer_finish(&encoded);
@@ -168,7 +217,8 @@ int record_write_second(const struct record *record, const char *path)
 
 	snprintf(name, sizeof(name), "%s.second", path);
 	buffer_init(&file, RECORD_BYTES_MAX);
-	record_encode(&file, record);
+	record_encode(&file, record, RECORD_VERSION);
+	tuf_encode(&file, &record->tuf);
 	check = hash_of(buffer_bytes(&file));
 	buffer_put(&file, check.bytes, HASH_BYTES);
 	rc = file.error;

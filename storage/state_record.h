@@ -4,11 +4,17 @@
  * people can read, with a hash over the encoded record; and in encoded form, followed by that hash,
  * in PATH.second. The encoded form:
  *
- *   "GSta"  u32 version(2)  u64 sequence floor  u64 time floor, negated
+ *   "GSta"  u32 version(3)  u64 sequence floor  u64 time floor, negated
  *   16 bytes root  u32 root bytes  u64 sequence  u32 size, release.json  u32 size, root/N.json
  *   u32 tries  of the previous release: 16 bytes root ... release.json
+ *   of The Update Framework: u64 changes, then root, timestamp, snapshot, targets, each after its
+ *   u32 size
  *
- * Version 1 ended before the tries. Such a copy is still read; its release counts as proven. */
+ * Version 1 ended before the tries, version 2 before The Update Framework. Such copies are still
+ * read; the release of version 1 counts as proven.
+ *
+ * In the database, the files of The Update Framework are a table of their own with a hash of its
+ * own, because a program of the other slot that does not know them reads and writes the record. */
 #ifndef GOPURA_STORAGE_STATE_RECORD_H
 #define GOPURA_STORAGE_STATE_RECORD_H
 
@@ -22,17 +28,26 @@ struct kept_release {
 	struct buffer file;
 };
 
+/* The files in the order of struct state_tuf. */
+enum { KEPT_TUF_ROOT, KEPT_TUF_FILES = 4 };
+
+struct kept_tuf {
+	uint64_t changes; /* how often they were set: of two copies, the higher one is newer */
+	struct buffer files[KEPT_TUF_FILES]; /* the root's empty: this form is not followed */
+};
+
 struct record {
 	uint64_t sequence_floor;
 	int64_t stored_time_floor_s; /* negated; see record_time_floor_s */
 	struct kept_release release, previous;
 	struct buffer trust; /* empty: none yet */
 	uint32_t tries;      /* tries of the release; 0: proven */
+	struct kept_tuf tuf;
 };
 
 /* Makes an empty record. */
 void record_init(struct record *record);
-/* Frees the three files. */
+/* Frees the files. */
 void record_finish(struct record *record);
 /* Initialises *out and copies everything, including the files. Check record_error afterwards. */
 void record_copy(struct record *out, const struct record *from);
@@ -45,8 +60,12 @@ int64_t record_time_floor_s(const struct record *record);
 void record_set_time_floor(struct record *record, int64_t floor_s);
 /* Returns the error of the record's buffers: 0, -EFBIG if a file did not fit, or -ENOMEM. */
 must_check int record_error(const struct record *record);
-/* Computes the hash of the encoded record. Returns a buffer's error, as record_error. */
+/* Computes the hash of the encoded record as of version 2, and of what follows there. Returns a
+ * buffer's error, as record_error. */
 must_check int record_hash(struct hash *out, const struct record *record);
+must_check int record_tuf_hash(struct hash *out, const struct record *record);
+/* Replaces the files of The Update Framework by those of from. Check record_error afterwards. */
+void record_copy_tuf(struct record *record, const struct record *from);
 
 /* Reads PATH.second, where path is that of the database. -EBADMSG: not such a record, or it was
  * changed after it was written. *out must be finished in any case. */

@@ -29,6 +29,7 @@ struct promise {
 	uint64_t in_use, before, floor; /* sequences */
 	uint32_t tries;
 	bool trusted;
+	uint32_t tuf;      /* number of the metadata of The Update Framework; 0: none */
 	uint32_t objects;  /* of the first so many all must be there */
 	uint32_t locators; /* the same, in use or before */
 };
@@ -89,6 +90,31 @@ static struct state_release release_of(uint64_t sequence)
 	};
 }
 
+/* Metadata of The Update Framework of that number: four files of its byte. */
+static struct state_tuf tuf_of(uint8_t number)
+{
+	static uint8_t file[900];
+
+	memset(file, number, sizeof(file));
+	return (struct state_tuf){ { file, 900 }, { file, 300 }, { file, 310 }, { file, 500 } };
+}
+
+/* Returns the number of the metadata that is kept; 0: none; UINT32_MAX: files of two numbers. */
+static uint32_t kept_tuf(const struct state *state)
+{
+	struct state_tuf tuf, expected;
+
+	if (state_tuf(state, &tuf) == -ENOENT)
+		return 0;
+	expected = tuf_of(tuf.root.data[0]);
+	return bytes_equal(tuf.root, expected.root) &&
+			       bytes_equal(tuf.timestamp, expected.timestamp) &&
+			       bytes_equal(tuf.snapshot, expected.snapshot) &&
+			       bytes_equal(tuf.targets, expected.targets)
+		       ? tuf.root.data[0]
+		       : UINT32_MAX;
+}
+
 /* ---- the workload */
 
 static struct cache *open_cache(const char *in)
@@ -130,6 +156,7 @@ static void promise(const struct state *state, uint32_t objects, uint32_t locato
 	next->floor = state_sequence_floor(state);
 	next->tries = state_tries(state);
 	next->trusted = state_trust(state, &trust) == 0;
+	next->tuf = kept_tuf(state);
 	next->objects = objects;
 	next->locators = locators;
 	power_mark(promise_count++);
@@ -156,9 +183,12 @@ static void bring(struct cache *cache, uint32_t release)
 static void switch_to(struct cache *cache, struct state *state, uint32_t release)
 {
 	const struct state_release next = release_of(release);
+	const struct state_tuf tuf = tuf_of((uint8_t)release);
 	const uint32_t objects = object_number(release, OBJECTS), before = objects - OBJECTS + 2;
 
 	bring(cache, release);
+	promise(state, careless ? before : objects, careless ? release - 1 : release);
+	CHECK(state_set_tuf(state, &tuf, STATE_CLEAR_NOTHING) == 0);
 	promise(state, careless ? before : objects, careless ? release - 1 : release);
 	CHECK(state_activate(state, &next) == 0);
 	promise(state, objects, release);
@@ -250,7 +280,7 @@ static bool keeps(const struct state *state, const struct promise *promise)
 	return sequence_of(state_release(state, &release), &release) == promise->in_use &&
 	       sequence_of(state_previous(state, &release), &release) == promise->before &&
 	       state_sequence_floor(state) == promise->floor &&
-	       state_tries(state) == promise->tries &&
+	       state_tries(state) == promise->tries && kept_tuf(state) == promise->tuf &&
 	       (state_trust(state, &trust) == 0) == promise->trusted;
 }
 
@@ -265,6 +295,10 @@ static const char *judge_state(const struct state *state, const struct promise *
 		wrong = wrong_release(state_previous(state, &release), &release);
 	if (!wrong && state_sequence_floor(state) < old->floor)
 		wrong = "the sequence floor fell";
+	if (!wrong && kept_tuf(state) == UINT32_MAX)
+		wrong = "the metadata of The Update Framework is mixed";
+	if (!wrong && kept_tuf(state) < old->tuf)
+		wrong = "the metadata of The Update Framework went back";
 	if (!wrong && !keeps(state, old) && !keeps(state, new))
 		wrong = "the state is neither the old nor the new one";
 	return wrong;

@@ -526,6 +526,154 @@ static void lives_without_a_disk(void **unused)
 	state_destroy(state);
 }
 
+/* ---- metadata of The Update Framework */
+
+static struct state_tuf tuf(uint8_t n)
+{
+	static uint8_t files[256][64];
+
+	memset(files[n], n, sizeof(files[n]));
+	return (struct state_tuf){
+		{ files[n], 64 }, { files[n], 10 }, { files[n], 11 }, { files[n], 12 }
+	};
+}
+
+static void set_tuf(struct state *state, uint8_t n, enum state_clear clear)
+{
+	const struct state_tuf files = tuf(n);
+
+	CHECK(state_set_tuf(state, &files, clear) == 0);
+}
+
+/* The number of the files that are kept, all of them checked; 0: none. */
+static int kept_tuf(const struct state *state)
+{
+	struct state_tuf now, expected;
+
+	if (state_tuf(state, &now) == -ENOENT)
+		return 0;
+	expected = tuf(now.root.data[0]);
+	CHECK(bytes_equal(now.root, expected.root) &&
+	      bytes_equal(now.timestamp, expected.timestamp) &&
+	      bytes_equal(now.snapshot, expected.snapshot) &&
+	      bytes_equal(now.targets, expected.targets));
+	return now.root.data[0];
+}
+
+static void copy_file(const char *from, const char *to)
+{
+	char command[256];
+
+	snprintf(command, sizeof(command), "cp %s%s %s%s", path, from, path, to);
+	CHECK(system(command) == 0);
+}
+
+static void keeps_tuf_across_a_restart_and_damage(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(kept_tuf(state) == 0);
+	set_tuf(state, 1, STATE_CLEAR_NOTHING);
+	set_tuf(state, 2, STATE_CLEAR_NOTHING);
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	state = open_state();
+	CHECK(kept_tuf(state) == 2 && active(state) == 3);
+	state_destroy(state);
+	write_at("", 0, "not a database at all");
+	state = open_state();
+	CHECK(kept_tuf(state) == 2 && active(state) == 3);
+	state_destroy(state);
+}
+
+static void a_row_of_tuf_that_was_changed_is_not_believed(void **unused)
+{
+	struct state *state = open_state();
+	sqlite3 *db;
+
+	(void)unused;
+	set_tuf(state, 5, STATE_CLEAR_NOTHING);
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	CHECK(db_open(&db, path) == 0);
+	CHECK(db_exec(db, "UPDATE tuf SET timestamp = x'00'") == 0);
+	CHECK(sqlite3_close(db) == SQLITE_OK);
+	state = open_state(); /* from the second copy */
+	CHECK(kept_tuf(state) == 5 && active(state) == 3 && exists(".broken"));
+	state_destroy(state);
+}
+
+static void an_old_database_put_back_does_not_bring_old_tuf_back(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	set_tuf(state, 1, STATE_CLEAR_NOTHING);
+	state_destroy(state);
+	copy_file("", ".old");
+	state = open_state();
+	set_tuf(state, 2, STATE_CLEAR_NOTHING);
+	state_destroy(state);
+	copy_file(".old", "");
+	state = open_state();
+	CHECK(kept_tuf(state) == 2);
+	set_tuf(state, 3, STATE_CLEAR_NOTHING);
+	state_destroy(state);
+	state = open_state();
+	CHECK(kept_tuf(state) == 3);
+	state_destroy(state);
+}
+
+static void a_second_copy_of_before_a_tuf_root_does_not_bring_the_floors_back(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	set_tuf(state, 1, STATE_CLEAR_NOTHING);
+	CHECK(activate(state, 200) == 0);
+	state_destroy(state);
+	copy_file(".second", ".second.old");
+	state = open_state();
+	set_tuf(state, 2, STATE_CLEAR_BOTH_FLOORS);
+	CHECK(state_sequence_floor(state) == 0);
+	state_destroy(state);
+	copy_file(".second.old", ".second"); /* the power failed between the two writes */
+	state = open_state();
+	CHECK(kept_tuf(state) == 2 && state_sequence_floor(state) == 0);
+	state_destroy(state);
+}
+
+/* After an update that failed, the other slot's program writes the record as it knows it. */
+static void a_program_that_knows_no_tuf_uses_the_same_record(void **unused)
+{
+	struct state *state = open_state();
+	struct record record, again;
+	struct hash hash, stored;
+	sqlite3_stmt *select;
+	sqlite3 *db;
+
+	(void)unused;
+	set_tuf(state, 1, STATE_CLEAR_NOTHING);
+	CHECK(activate(state, 3) == 0);
+	state_destroy(state);
+	record_init(&record);
+	record_init(&again);
+	CHECK(record_read_second(&record, path) == 0);
+	record_copy_tuf(&record, &again); /* none */
+	CHECK(record_hash(&hash, &record) == 0);
+	CHECK(db_open(&db, path) == 0);
+	CHECK(sqlite3_prepare_v2(db, "SELECT check_hash FROM record", -1, &select, NULL) ==
+	      SQLITE_OK);
+	CHECK(sqlite3_step(select) == SQLITE_ROW && sqlite3_column_bytes(select, 0) == HASH_BYTES);
+	memcpy(stored.bytes, sqlite3_column_blob(select, 0), HASH_BYTES);
+	sqlite3_finalize(select);
+	CHECK(sqlite3_close(db) == SQLITE_OK);
+	CHECK(hash_equal(hash, stored));
+	record_finish(&record);
+	record_finish(&again);
+}
+
 #define IN_A_FOLDER(test) cmocka_unit_test_setup_teardown(test, enter_empty_folder, leave_folder)
 
 int main(void)
@@ -549,6 +697,11 @@ int main(void)
 		IN_A_FOLDER(is_old_or_new_after_a_power_cut_anywhere),
 		IN_A_FOLDER(refuses_changes_on_a_full_disk_and_goes_on),
 		IN_A_FOLDER(lives_without_a_disk),
+		IN_A_FOLDER(keeps_tuf_across_a_restart_and_damage),
+		IN_A_FOLDER(a_row_of_tuf_that_was_changed_is_not_believed),
+		IN_A_FOLDER(an_old_database_put_back_does_not_bring_old_tuf_back),
+		IN_A_FOLDER(a_second_copy_of_before_a_tuf_root_does_not_bring_the_floors_back),
+		IN_A_FOLDER(a_program_that_knows_no_tuf_uses_the_same_record),
 	};
 
 	fault_install();
