@@ -12,6 +12,7 @@
 
 #include "geometry/viewpoint.h"
 #include "pipeline/content/info_parts.h"
+#include "pipeline/content/tour_scene.h"
 
 static const char tours_file[] = "tours.json";
 
@@ -210,6 +211,73 @@ static int read_stops(struct tour_reader *r, const cJSON *json)
 	return rc;
 }
 
+/* ---- stops from a scene ---- */
+
+/* What tours.json adds to the halt of a tour whose views are a scene's. */
+static int read_halt(struct tour_reader *r, const cJSON *json, struct draft_stop *stop)
+{
+	r->line = cJSON_IsObject(json) ? json_text_line(r->json, json) : r->line;
+	stop->line = r->line;
+	if (!cJSON_IsObject(json)) {
+		report(r, "must be an object: {\"caption\": {...}}");
+		return 0;
+	}
+	check_keys(r, json, " part stay caption ");
+	read_part(r, json, &stop->view);
+	stop->view.stay_s = read_seconds(r, json, "stay", stop->view.stay_s, false);
+	return read_texts(r, json, "caption", stop->captions, false);
+}
+
+static int read_halts(struct tour_reader *r, const cJSON *json)
+{
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(json, "stops"), *item;
+	const int told = cJSON_GetArraySize(array);
+	const unsigned line = r->line;
+	uint32_t at = 0, halts = 0;
+	int rc = 0;
+
+	for (uint32_t i = 0; i < r->tour->stop_count; i++)
+		halts += r->tour->stops[i].view.stay_s > 0;
+	if (array && (!cJSON_IsArray(array) || told > (int)halts)) {
+		report(r, "\"stops\" must be a list of at most %u, as often as its scene halts",
+		       halts);
+		return 0;
+	}
+	cJSON_ArrayForEach(item, array)
+	{
+		while (r->tour->stops[at].view.stay_s == 0)
+			at++;
+		r->stop = ++at;
+		if (rc == 0)
+			rc = read_halt(r, item, &r->tour->stops[at - 1]);
+	}
+	r->stop = 0;
+	r->line = line;
+	return rc;
+}
+
+/* Reads the stops of a tour through a scene. */
+static int read_scene(struct tour_reader *r, const cJSON *json)
+{
+	const cJSON *scene = cJSON_GetObjectItemCaseSensitive(json, "scene");
+	const cJSON *viewpoint = cJSON_GetObjectItemCaseSensitive(json, "viewpoint");
+	int rc;
+
+	if (!cJSON_IsString(scene) || strncmp(scene->valuestring, "scenes/", 7) != 0) {
+		report(r, "\"scene\" must be a file that scenes.json names, \"scenes/NAME.wrl\"");
+		return 0;
+	}
+	if (viewpoint && !cJSON_IsString(viewpoint)) {
+		report(r, "\"viewpoint\" must be the description of a Viewpoint");
+		return 0;
+	}
+	rc = tour_scene_stops(r->draft, r->tour, scene->valuestring,
+			      cJSON_GetStringValue(viewpoint));
+	return rc == 0 && r->tour->stop_count > 0 ? read_halts(r, json) : rc;
+}
+
+/* ---- places ---- */
+
 /* Computes the view of the stop's part, as for a visitor who comes from the stop before. */
 static void place_stop(const struct tour_reader *r, struct draft_stop *stop,
 		       const struct info_stop *before)
@@ -295,14 +363,16 @@ static int read_tour(struct draft *draft, const struct json_text *text, const cJ
 		report(&r, "use 1 to %d of a-z, 0-9, - and _ for its \"id\"", INFO_ID_BYTES_MAX);
 	if (is_twice)
 		report(&r, "is defined twice: rename or remove one");
-	check_keys(&r, json, " id title caption thumbnail attract stops ");
+	check_keys(&r, json, " id title caption thumbnail attract scene viewpoint stops ");
 	check_attract(&r, json);
 	rc = read_texts(&r, json, "title", tour->titles, true);
 	if (rc == 0)
 		rc = read_texts(&r, json, "caption", tour->captions, false);
 	if (rc == 0)
 		rc = read_thumbnail(&r, json);
-	return rc == 0 ? read_stops(&r, json) : rc;
+	if (rc < 0)
+		return rc;
+	return cJSON_HasObjectItem(json, "scene") ? read_scene(&r, json) : read_stops(&r, json);
 }
 
 static int read_array(struct draft *draft, const struct json_text *json, const cJSON *array)

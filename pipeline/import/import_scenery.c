@@ -1,13 +1,17 @@
-/* Reads VRML97 files as scenery. */
+/* Reads VRML97 files as scenery, and the views in them. */
 #include "pipeline/import/import_scenery.h"
 
 #include <errno.h>
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "geometry/vec.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_text.h"
+#include "pipeline/scene/vrml_views.h"
 
 static int open_file(void *data, const char *name)
 {
@@ -57,27 +61,109 @@ static struct scenery_node node_of(uint32_t layer, const struct import_options *
 	return node;
 }
 
+/* Reads the file if it is of a format that scenes have. */
+static int read_file(struct vrml **out, const char *path, struct diagnostics *diagnostics,
+		     struct diagnostics *warnings)
+{
+	enum scan_format format;
+	uint64_t bytes;
+	int rc = import_detect(&format, &bytes, path, diagnostics);
+
+	*out = NULL;
+	if (rc == 0 && format != SCAN_VRML)
+		rc = diagnostics_add(diagnostics, -EINVAL, path, 0,
+				     "scenes are VRML97 (.wrl, .wrz); export it as that");
+	return rc < 0 ? rc : read_scene(out, path, diagnostics, warnings);
+}
+
 int import_scenery(struct scenery_maker *maker, const char *path, uint32_t layer,
 		   const struct import_options *options, struct diagnostics *diagnostics,
 		   struct diagnostics *warnings)
 {
 	const struct scenery_node node = node_of(layer, options);
-	enum scan_format format;
-	struct vrml *scene = NULL;
-	uint64_t bytes;
+	struct vrml *scene;
 	uint32_t number;
-	int rc = import_detect(&format, &bytes, path, diagnostics);
+	int rc = read_file(&scene, path, diagnostics, warnings);
 
-	if (rc == 0 && format != SCAN_VRML)
-		rc = diagnostics_add(diagnostics, -EINVAL, path, 0,
-				     "scenes are VRML97 (.wrl, .wrz); export it as that");
-	if (rc == 0)
-		rc = read_scene(&scene, path, diagnostics, warnings);
 	if (rc == 0 && scenery_add_node(maker, &node, &number) < 0)
 		rc = diagnostics_add(diagnostics, -EFBIG, path, 0, "over %d nodes in all scenes",
 				     SCENERY_NODES_MAX);
 	if (rc == 0)
 		rc = vrml_scenery_add(maker, scene, number, diagnostics, warnings);
 	vrml_destroy(scene);
+	return rc;
+}
+
+/* ---- views */
+
+/* Turns a place of the file into the site's: v + 2 w (q x v) + 2 q x (q x v). */
+static void to_site(float out[3], const struct scenery_place *place, const float at[3])
+{
+	float scaled[3], once[3], twice[3];
+
+	for (int k = 0; k < 3; k++)
+		scaled[k] = place->scale[k] * at[k];
+	vec_cross(once, place->turn, scaled);
+	vec_cross(twice, place->turn, once);
+	for (int k = 0; k < 3; k++)
+		out[k] = scaled[k] + 2 * (place->turn[3] * once[k] + twice[k]);
+}
+
+static bool is_near(const float at_m[3])
+{
+	for (int k = 0; k < 3; k++)
+		if (!(fabsf(at_m[k]) <= SCENERY_PLACE_MAX))
+			return false;
+	return true;
+}
+
+static int take_views(struct import_views *out, const struct vrml_views *views, const char *path,
+		      const struct import_options *options, struct diagnostics *diagnostics)
+{
+	const struct scenery_node node = node_of(SCENERY_NONE, options);
+
+	out->items = calloc((size_t)views->count + 1, sizeof(*out->items));
+	if (!out->items)
+		return -ENOMEM;
+	out->is_way = views->moves;
+	for (uint32_t i = 0; i < views->count; i++) {
+		struct import_view *to = &out->items[out->count++];
+		float ahead[3];
+
+		to->time_s = views->items[i].time_s;
+		to_site(to->eye_m, &node.place, views->items[i].eye);
+		to_site(to->target_m, &node.place, views->items[i].target);
+		vec_sub(ahead, to->target_m, to->eye_m);
+		vec_normalise(ahead);
+		vec_add_scaled(to->target_m, to->eye_m, 1, ahead);
+		if (!is_near(to->eye_m) || !is_near(to->target_m))
+			return diagnostics_add(diagnostics, -EINVAL, path, 0,
+					       "a Viewpoint stands over %d m away; correct its "
+					       "place, or the scene's unit",
+					       SCENERY_PLACE_MAX);
+	}
+	return 0;
+}
+
+int import_scenery_views(struct import_views *out, const char *path, const char *description,
+			 const struct import_options *options, struct diagnostics *diagnostics)
+{
+	struct diagnostics warnings = { 0 }; /* import_scenery gives them */
+	struct vrml_views views = { 0 };
+	struct vrml *scene;
+	int rc = read_file(&scene, path, diagnostics, &warnings);
+
+	*out = (struct import_views){ 0 };
+	if (rc == 0)
+		rc = vrml_views_read(&views, scene, description, diagnostics);
+	if (rc == 0)
+		rc = take_views(out, &views, path, options, diagnostics);
+	if (rc < 0) {
+		free(out->items);
+		*out = (struct import_views){ 0 };
+	}
+	vrml_views_finish(&views);
+	vrml_destroy(scene);
+	diagnostics_finish(&warnings);
 	return rc;
 }

@@ -84,6 +84,11 @@ bool vrml_is(const struct vrml_node *node, const char *type)
 	return strcmp(node->type->name, type) == 0;
 }
 
+bool vrml_event_sets(const char *event, const char *field)
+{
+	return strcmp(strncmp(event, "set_", 4) == 0 ? event + 4 : event, field) == 0;
+}
+
 struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *count)
 {
 	static const char *const fields[] = { "children", "choice", "level" };

@@ -21,6 +21,8 @@ bool vrml_mirrors(const float place[16]);
 struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *count);
 /* Returns whether the node is of that type. */
 bool vrml_is(const struct vrml_node *node, const char *type);
+/* Returns whether an event sets a field: it has its name, with or without set_ before it. */
+bool vrml_event_sets(const char *event, const char *field);
 /* Returns the node in a field if it is of that type, else NULL. node may be NULL. */
 const struct vrml_node *vrml_node_of(const struct vrml_node *node, const char *field,
 				     const char *type);

@@ -38,18 +38,12 @@ void vrml_instances_finish(struct vrml_instances *instances)
 	*instances = (struct vrml_instances){ 0 };
 }
 
-/* Whether an event has this name, with or without set_ before it. */
-static bool sets(const char *event, const char *field)
-{
-	return strcmp(strncmp(event, "set_", 4) == 0 ? event + 4 : event, field) == 0;
-}
-
 /* Whether a route goes from an event of a node to one of a type. */
 static bool leads(const struct vrml_route *route, const struct vrml_node *from, const char *out,
 		  const char *type, const char *in)
 {
 	return *route->from == from && strcmp(route->out, out) == 0 && *route->to &&
-	       vrml_is(*route->to, type) && sets(route->in, in);
+	       vrml_is(*route->to, type) && vrml_event_sets(route->in, in);
 }
 
 /* ---- tracks */
@@ -96,19 +90,27 @@ static const char *fault_of(const struct vrml_value *keys, const struct vrml_val
 	return NULL;
 }
 
+int vrml_keys(const struct vrml_node *interpolator, uint32_t width, const struct vrml_value **keys,
+	      const struct vrml_value **values, struct diagnostics *diagnostics)
+{
+	const char *fault;
+
+	*keys = vrml_get(interpolator, "key");
+	*values = vrml_get(interpolator, "keyValue");
+	fault = fault_of(*keys, *values, width);
+	return fault ? diagnostics_add(diagnostics, -EBADMSG, interpolator->file,
+				       interpolator->line, "%s %s; correct them",
+				       interpolator->type->name, fault)
+		     : 0;
+}
+
 static int add_tracks(const struct follow *follow, const struct vrml_node *interpolator,
 		      const struct vrml_node *target, const struct sink *sink)
 {
-	const struct vrml_value *keys = vrml_get(interpolator, "key");
-	const struct vrml_value *values = vrml_get(interpolator, "keyValue");
+	const struct vrml_value *keys, *values;
 	const uint32_t wide = scenery_width(sink->target);
-	const char *fault = fault_of(keys, values, sink->width);
-	int rc = 0;
+	int rc = vrml_keys(interpolator, sink->width, &keys, &values, follow->diagnostics);
 
-	if (fault)
-		return diagnostics_add(follow->diagnostics, -EBADMSG, interpolator->file,
-				       interpolator->line, "%s %s; correct them",
-				       interpolator->type->name, fault);
 	for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++) {
 		const struct vrml_instance *instance = &follow->instances->items[i];
 		float *out;
@@ -123,12 +125,24 @@ static int add_tracks(const struct follow *follow, const struct vrml_node *inter
 	return rc;
 }
 
-/* Adds what one interpolator sets. */
-static int follow_interpolator(const struct follow *follow, const struct vrml_node *interpolator)
+/* Whether a route moves a Viewpoint: that is the way of a tour (vrml_views.h), and no motion. */
+static bool moves_viewpoint(const struct vrml_route *route, const struct vrml_node *interpolator)
+{
+	return leads(route, interpolator, "value_changed", "Viewpoint", "position") ||
+	       leads(route, interpolator, "value_changed", "Viewpoint", "orientation");
+}
+
+/* Adds what one interpolator sets. Sets *moves_view if that is a Viewpoint. */
+static int follow_interpolator(const struct follow *follow, const struct vrml_node *interpolator,
+			       bool *moves_view)
 {
 	int rc = 0;
 
-	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
+	for (uint32_t r = 0; r < follow->count && rc == 0; r++) {
+		if (moves_viewpoint(follow->routes[r], interpolator)) {
+			follow->used[r] = true;
+			*moves_view = true;
+		}
 		for (size_t s = 0; s < ARRAY_COUNT(sinks) && rc == 0; s++) {
 			const struct sink *sink = &sinks[s];
 
@@ -139,6 +153,7 @@ static int follow_interpolator(const struct follow *follow, const struct vrml_no
 			follow->used[r] = true;
 			rc = add_tracks(follow, interpolator, *follow->routes[r]->to, sink);
 		}
+	}
 	return rc;
 }
 
@@ -161,7 +176,8 @@ static int add_touches(const struct follow *follow, const struct vrml_node *time
 		const struct vrml_route *route = follow->routes[r];
 
 		if (*route->to != timer || !*route->from || !vrml_is(*route->from, "TouchSensor") ||
-		    strcmp(route->out, "touchTime") != 0 || !sets(route->in, "startTime"))
+		    strcmp(route->out, "touchTime") != 0 ||
+		    !vrml_event_sets(route->in, "startTime"))
 			continue;
 		follow->used[r] = true;
 		for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++)
@@ -174,7 +190,8 @@ static int add_touches(const struct follow *follow, const struct vrml_node *time
 	return rc;
 }
 
-/* A motion without a beginning or an effect is taken back, with its touches and tracks. */
+/* A motion without a beginning or an effect is taken back, with its touches and tracks. why NULL:
+ * without a warning. */
 static void take_back(const struct follow *follow, const struct vrml_node *timer, uint32_t touches,
 		      const char *why)
 {
@@ -185,8 +202,9 @@ static void take_back(const struct follow *follow, const struct vrml_node *timer
 		out->number_count = out->tracks[motion->first_track].first;
 	out->track_count = motion->first_track;
 	out->touch_count -= touches;
-	diagnostics_add(follow->warnings, 0, timer->file, timer->line,
-			"this TimeSensor %s; it was left out", why);
+	if (why)
+		diagnostics_add(follow->warnings, 0, timer->file, timer->line,
+				"this TimeSensor %s; it was left out", why);
 }
 
 static int follow_timer(const struct follow *follow, const struct vrml_node *timer)
@@ -194,6 +212,7 @@ static int follow_timer(const struct follow *follow, const struct vrml_node *tim
 	struct scenery_motion motion = { .duration_s = vrml_get_float(timer, "cycleInterval", 1),
 					 .loops = vrml_get_integer(timer, "loop", 0) != 0 };
 	uint32_t number = 0, touches = 0;
+	bool moves_view = false;
 	int rc;
 
 	if (!(motion.duration_s > 0 && motion.duration_s <= 3600))
@@ -206,15 +225,16 @@ static int follow_timer(const struct follow *follow, const struct vrml_node *tim
 		const struct vrml_route *route = follow->routes[r];
 
 		if (*route->from != timer || strcmp(route->out, "fraction_changed") != 0 ||
-		    !*route->to || !is_interpolator(*route->to) || !sets(route->in, "fraction"))
+		    !*route->to || !is_interpolator(*route->to) ||
+		    !vrml_event_sets(route->in, "fraction"))
 			continue;
 		follow->used[r] = true;
-		rc = follow_interpolator(follow, *route->to);
+		rc = follow_interpolator(follow, *route->to, &moves_view);
 	}
 	if (rc < 0)
 		return rc;
 	if (follow->maker->out.motions[number].track_count == 0)
-		take_back(follow, timer, touches, "moves nothing that is seen");
+		take_back(follow, timer, touches, moves_view ? NULL : "moves nothing that is seen");
 	else if (!vrml_get_integer(timer, "enabled", 1))
 		take_back(follow, timer, touches, "is not enabled");
 	else if (touches == 0 && !motion.loops)

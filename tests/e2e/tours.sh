@@ -25,7 +25,7 @@ grep -q 'tours.json:[0-9]*: tour "round", from stop 3 to stop 4: the way leads t
 cat >"$work/fingers.touch" <<'T'
 4000 down 0 163 520
 4080 up 0
-6500 down 0 480 465
+6500 down 0 480 420
 6580 up 0
 30000 down 0 480 150
 30200 move 0 520 150

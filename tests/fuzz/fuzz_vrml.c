@@ -1,10 +1,11 @@
 /* A VRML97 scene, gzip'd or not, which may name itself as the file of an Inline or a prototype: it
  * is refused with its name, or becomes triangles whose numbers are finite or far, and whose
- * textures are there; or scenery. */
+ * textures are there; or scenery; or views, whose times ascend. */
 #include <errno.h>
 
 #include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_surface.h"
+#include "pipeline/scene/vrml_views.h"
 #include "tests/fuzz/scratch.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
@@ -44,6 +45,19 @@ static int make_scenery(const struct vrml *scene, struct diagnostics *diagnostic
 	return rc;
 }
 
+static void read_views(const struct vrml *scene, struct diagnostics *diagnostics)
+{
+	struct vrml_views views;
+	int rc = vrml_views_read(&views, scene, NULL, diagnostics);
+
+	if (rc < 0 && diagnostics->error_count == 0)
+		abort();
+	for (uint32_t i = 1; i < views.count; i++)
+		if (views.items[i].time_s < views.items[i - 1].time_s)
+			abort();
+	vrml_views_finish(&views);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
@@ -57,6 +71,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	options.data = (void *)scratch_path("other.wrl");
 	rc = vrml_read(&scene, (struct bytes){ data, size }, "a.wrl", &options, &diagnostics,
 		       &warnings);
+	if (rc == 0)
+		read_views(scene, &diagnostics);
+	diagnostics_finish(&diagnostics);
+	diagnostics = (struct diagnostics){ 0 };
 	if (rc == 0) {
 		rc = vrml_surface_make(&surface, scene, &diagnostics);
 		if (rc == 0) {

@@ -4,7 +4,7 @@ same place in every language."""
 import sys
 
 HOME, SEARCH, TOURS, LIGHT, SECTION, LARGE, REACH = [(x, 516) for x in (23, 128, 163, 199, 234, 269, 304)]
-ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 465)
+ROW, CARD, CLOSE, PICTURE_CLOSE, SECOND_TOUR = (720, 75), (480, 430), (915, 22), (933, 27), (480, 420)
 WIDEN = (824, 20)
 
 touches, shots = [], []

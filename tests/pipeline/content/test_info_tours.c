@@ -127,6 +127,105 @@ static void links_lead_to_tours_that_are_there(void **state)
 	CHECK(was_told("pages/gate.en.html", 2, "no tour has that id"));
 }
 
+/* A walk in centimetres that rests in its middle; and two Viewpoints that stand still. */
+static void write_scenes(void)
+{
+	char path[100];
+
+	snprintf(path, sizeof(path), "%s/scenes", folder);
+	mkdir(path, 0755);
+	write_text("scenes.json",
+		   "{\"scenes\": [{\"file\": \"scenes/walk.wrl\", \"unit\": \"cm\"},\n"
+		   "{\"file\": \"scenes/still.wrl\", \"up\": \"z\"}]}");
+	write_text("scenes/walk.wrl",
+		   "#VRML V2.0 utf8\nDEF V Viewpoint {}\nDEF C TimeSensor { cycleInterval 10 }\n"
+		   "DEF P PositionInterpolator { key [ 0 0.4 0.7 1 ]\n"
+		   "  keyValue [ 0 200 0, 400 200 0, 400 200 0, 400 200 300 ] }\n"
+		   "ROUTE C.fraction_changed TO P.set_fraction\n"
+		   "ROUTE P.value_changed TO V.position");
+	write_text("scenes/still.wrl", "#VRML V2.0 utf8\nViewpoint { position 1 2 3 }\n"
+				       "Viewpoint { position 4 5 6 }");
+}
+
+#define SCENE_TOUR(more) "{\"tours\": [\n{\"id\": \"a\", \"title\": {\"en\": \"A\"}, " more "}]}"
+
+static void a_scene_gives_the_stops_of_a_tour(void **state)
+{
+	const struct info_tour *tour;
+	struct info_built built;
+	struct info *info;
+
+	(void)state;
+	write_scenes();
+	write_text("tours.json",
+		   SCENE_TOUR("\"scene\": \"scenes/walk.wrl\",\n\"stops\": [{},\n"
+			      "{\"part\": \"naga\", \"caption\": {\"en\": \"Here\"}}]"));
+	CHECK(build(&built) == 0 && built.tour_lines[0].stops[0] == 3);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	tour = info_tour(info, 0);
+	CHECK(tour->stop_count == 3);
+	/* y of the file is up, and the way that a Viewpoint looks, -z, is y of the site. */
+	CHECK(fabsf(tour->stops[1].eye_m[0] - 4) < 1e-4f);
+	CHECK(fabsf(tour->stops[1].eye_m[2] - 2) < 1e-4f);
+	CHECK(fabsf(tour->stops[2].eye_m[1] + 3) < 1e-4f);
+	CHECK(tour->stops[2].target_m[1] > tour->stops[2].eye_m[1]);
+	CHECK(tour->stops[0].stay_s == 2 && tour->stops[2].stay_s == 2);
+	CHECK(fabsf(tour->stops[1].stay_s - 3) < 1e-4f); /* where the keys rest */
+	CHECK(fabsf(tour->stops[1].travel_s - 4) < 1e-4f);
+	CHECK(fabsf(tour->stops[2].travel_s - 3) < 1e-4f);
+	CHECK(tour->stops[1].part == info_find(info, "naga") && tour->stops[0].part == -1);
+	CHECK(strcmp(info_stop_caption(info, 0, 1, "en"), "Here") == 0);
+	info_close(info);
+	info_built_finish(&built);
+
+	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/still.wrl\", \"stops\": []"));
+	CHECK(build(&built) == 0);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	tour = info_tour(info, 0);
+	CHECK(tour->stop_count == 2 && tour->stops[1].eye_m[2] == 6);
+	CHECK(tour->stops[0].stay_s == 6 && tour->stops[1].travel_s == 0);
+	info_close(info);
+	info_built_finish(&built);
+}
+
+static void faults_of_a_tour_through_a_scene_are_named(void **state)
+{
+	static const struct {
+		const char *json, *words;
+	} cases[] = {
+		{ SCENE_TOUR("\"scene\": 7"), "\"scene\" must be a file that scenes.json names" },
+		{ SCENE_TOUR("\"scene\": \"scenes/no.wrl\""), "does not name \"scenes/no.wrl\"" },
+		{ SCENE_TOUR("\"scene\": \"scenes/walk.wrl\", \"viewpoint\": 7"),
+		  "\"viewpoint\" must be the description" },
+		{ SCENE_TOUR("\"scene\": \"scenes/walk.wrl\", \"stops\": [{}, {}, {}, {}]"),
+		  "a list of at most 3" },
+		{ SCENE_TOUR("\"scene\": \"scenes/walk.wrl\", \"stops\": [{\"eye\": [1, 2, 3]}]"),
+		  "stop 1: \"eye\" is not one of its keys" },
+		{ SCENE_TOUR("\"scene\": \"scenes/walk.wrl\", \"stops\": [7]"),
+		  "stop 1: must be an object" },
+	};
+	struct info_built built;
+	char path[100];
+
+	(void)state;
+	write_scenes();
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		write_text("tours.json", cases[i].json);
+		CHECK(build(&built) == -EINVAL);
+		if (!was_told("tours.json", 2, cases[i].words))
+			fail_msg("case %zu: %s", i, diagnostics_cause(&told, 0));
+	}
+	write_text("scenes/still.wrl", "#VRML V2.0 utf8\nViewpoint {}");
+	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/still.wrl\""));
+	CHECK(build(&built) == -EINVAL);
+	CHECK(was_told("tours.json", 2, "has 1 Viewpoints: a tour needs 2"));
+	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/still.wrl\", "
+					    "\"viewpoint\": \"x\""));
+	CHECK(build(&built) == -EINVAL);
+	snprintf(path, sizeof(path), "%s/scenes/still.wrl", folder);
+	CHECK(was_told(path, 0, "has no moving Viewpoint"));
+}
+
 #define TOUR(stops)                                                                                \
 	"{\"tours\": [{\"id\": \"a\", \"title\": {\"en\": \"A\"},\n\"stops\": [\n" stops "]}]}"
 #define STOP "{\"eye\": [1, 2, 3], \"target\": [4, 5, 6]}"
@@ -246,6 +345,8 @@ int main(void)
 		IN_A_FOLDER(a_stop_that_names_a_part_alone_is_the_view_of_it),
 		IN_A_FOLDER(a_folder_without_tours_gives_none),
 		IN_A_FOLDER(links_lead_to_tours_that_are_there),
+		IN_A_FOLDER(a_scene_gives_the_stops_of_a_tour),
+		IN_A_FOLDER(faults_of_a_tour_through_a_scene_are_named),
 		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
 		IN_A_FOLDER(a_damaged_image_breaks_nothing),
 	};
