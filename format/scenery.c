@@ -76,12 +76,42 @@ static bool nodes_are_sane(const struct scenery *scenery)
 	return true;
 }
 
+/* Whether a number is at least `least` and at most `most`; not a number is not. */
+static bool is_within(float number, float least, float most)
+{
+	return number >= least && number <= most;
+}
+
+static bool materials_are_sane(const struct scenery *scenery)
+{
+	if (scenery->material_count > SCENERY_MATERIALS_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->material_count; i++) {
+		const struct scenery_material *material = &scenery->materials[i];
+		const uint8_t *rgb = material->specular;
+
+		if (!is_within(material->opacity, 1.0f / 255, 1) ||
+		    !is_within(material->shininess, rgb[0] || rgb[1] || rgb[2] ? 1 : 0, 128))
+			return false;
+	}
+	return true;
+}
+
+static bool fog_is_sane(const struct scenery *scenery)
+{
+	const struct scenery_fog *fog = &scenery->fog;
+
+	return is_within(fog->range_m, 0, far_m) &&
+	       (fog->layer == SCENERY_NONE || fog->layer < scenery->layer_count ||
+		fog->range_m == 0);
+}
+
 static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mesh *mesh)
 {
-	if (mesh->node >= scenery->node_count || !are_near(mesh->origin_m, 3) ||
-	    !(mesh->step_m > 0 && mesh->step_m <= far_m) || mesh->vertex_count < 3 ||
-	    mesh->vertex_count > SCENERY_VERTICES_MAX || mesh->triangle_count < 1 ||
-	    mesh->triangle_count > SCENERY_TRIANGLES_MAX)
+	if (mesh->node >= scenery->node_count || mesh->material >= scenery->material_count ||
+	    !are_near(mesh->origin_m, 3) || !(mesh->step_m > 0 && mesh->step_m <= far_m) ||
+	    mesh->vertex_count < 3 || mesh->vertex_count > SCENERY_VERTICES_MAX ||
+	    mesh->triangle_count < 1 || mesh->triangle_count > SCENERY_TRIANGLES_MAX)
 		return false;
 	for (uint32_t t = 0; t < mesh->triangle_count; t++)
 		for (int k = 0; k < 3; k++)
@@ -92,7 +122,7 @@ static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mes
 
 static bool meshes_are_sane(const struct scenery *scenery)
 {
-	uint32_t triangles = 0;
+	uint32_t triangles = 0, clear = 0;
 
 	if (scenery->mesh_count > SCENERY_MESHES_MAX)
 		return false;
@@ -100,7 +130,9 @@ static bool meshes_are_sane(const struct scenery *scenery)
 		if (!mesh_is_sane(scenery, &scenery->meshes[i]))
 			return false;
 		triangles += scenery->meshes[i].triangle_count;
-		if (triangles > SCENERY_ALL_TRIANGLES_MAX)
+		if (scenery->materials[scenery->meshes[i].material].opacity < 1)
+			clear += scenery->meshes[i].triangle_count;
+		if (triangles > SCENERY_ALL_TRIANGLES_MAX || clear > SCENERY_CLEAR_TRIANGLES_MAX)
 			return false;
 	}
 	return true;
@@ -236,8 +268,9 @@ static bool layers_are_sane(const struct scenery *scenery)
 
 bool scenery_is_sane(const struct scenery *scenery)
 {
-	return nodes_are_sane(scenery) && meshes_are_sane(scenery) && touches_are_sane(scenery) &&
-	       motions_are_sane(scenery) && layers_are_sane(scenery);
+	return nodes_are_sane(scenery) && materials_are_sane(scenery) && fog_is_sane(scenery) &&
+	       meshes_are_sane(scenery) && touches_are_sane(scenery) && motions_are_sane(scenery) &&
+	       layers_are_sane(scenery);
 }
 
 void scenery_finish(struct scenery *scenery)
@@ -249,6 +282,7 @@ void scenery_finish(struct scenery *scenery)
 		free(scenery->meshes[i].triangles);
 	}
 	free(scenery->nodes);
+	free(scenery->materials);
 	free(scenery->meshes);
 	free(scenery->motions);
 	free(scenery->touches);

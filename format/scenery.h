@@ -13,9 +13,11 @@ enum {
 	SCENERY_NODES_MAX = 4096,
 	SCENERY_DEPTH_MAX = 64, /* of nodes below each other */
 	SCENERY_MESHES_MAX = 4096,
-	SCENERY_VERTICES_MAX = 65535,        /* of a mesh */
-	SCENERY_TRIANGLES_MAX = 1 << 18,     /* of a mesh */
-	SCENERY_ALL_TRIANGLES_MAX = 1 << 19, /* of all meshes */
+	SCENERY_MATERIALS_MAX = 256,
+	SCENERY_VERTICES_MAX = 65535,          /* of a mesh */
+	SCENERY_TRIANGLES_MAX = 1 << 18,       /* of a mesh */
+	SCENERY_ALL_TRIANGLES_MAX = 1 << 19,   /* of all meshes */
+	SCENERY_CLEAR_TRIANGLES_MAX = 1 << 14, /* of all with an opacity below 1: they are sorted */
 	SCENERY_MOTIONS_MAX = 256,
 	SCENERY_TOUCHES_MAX = 1024,
 	SCENERY_TRACKS_MAX = 1024,     /* of all motions */
@@ -48,6 +50,27 @@ struct scenery_node {
 	struct scenery_place place;
 };
 
+/* What light does on a surface; geometry/appearance.h has the formulas. Zeroed, with an opacity of
+ * 1, is dull, with the colours of the vertices. */
+struct scenery_material {
+	bool has_two_sides; /* its back is seen too; else it is left out */
+	/* Light is computed at each pixel (Phong); else at the vertices (Gouraud), which is flat
+	 * where each face has normals of its own. */
+	bool by_pixel;
+	float opacity;       /* above 0; below 1 shows what is behind */
+	uint8_t emissive[3]; /* sRGB; added to the colour, whatever the light */
+	uint8_t specular[3]; /* sRGB; of the highlight of the sun */
+	float shininess;     /* 1 to 128: exponent of the highlight, if specular is not black */
+};
+
+/* What is far away fades into a colour, the scan too. */
+struct scenery_fog {
+	float range_m; /* nothing is seen beyond; 0: there is no fog */
+	bool is_exponential;
+	uint8_t rgb[3]; /* sRGB */
+	uint32_t layer; /* with which it is seen, or SCENERY_NONE: always */
+};
+
 struct scenery_vertex {
 	uint16_t place[3]; /* metres in the node = origin_m + step_m * place */
 	int8_t normal[2];  /* format/normal.h */
@@ -57,7 +80,7 @@ struct scenery_vertex {
 struct scenery_mesh {
 	uint32_t node;
 	float origin_m[3], step_m;
-	bool has_two_sides; /* its back is seen too; else it is left out */
+	uint32_t material;
 	uint32_t vertex_count, triangle_count;
 	struct scenery_vertex *vertices; /* owned */
 	uint16_t (*triangles)[3];        /* owned; counter-clockwise seen from outside */
@@ -110,8 +133,9 @@ struct scenery_layer {
 struct scenery {
 	uint32_t node_count, mesh_count, motion_count, touch_count, track_count, number_count;
 	uint32_t layer_count; /* 0, or at least 2 */
-	uint32_t title_count;
+	uint32_t title_count, material_count;
 	struct scenery_node *nodes;
+	struct scenery_material *materials;
 	struct scenery_mesh *meshes;
 	struct scenery_motion *motions;
 	struct scenery_touch *touches;
@@ -119,6 +143,7 @@ struct scenery {
 	float *numbers;               /* track by track */
 	struct scenery_layer *layers;
 	struct scenery_title *titles; /* layer by layer */
+	struct scenery_fog fog;
 };
 
 /* Returns how many numbers a key of the target has. */

@@ -8,14 +8,16 @@
 #include <zstd.h>
 
 enum {
-	VERSION = 1,
+	VERSION = 2,
+	VERSION_PLAIN = 1, /* without materials and fog; a mesh said whether it has two sides */
 	ZSTD_LEVEL = 19,
 	HEADER_BYTES = 9,
 	RAW_BYTES_MAX = 32 << 20,
 	OBJECT_MAX = 16 << 20,
 	/* the bytes of one: */
 	NODE_BYTES = 2 * 4 + 17 * 4,
-	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4,
+	MATERIAL_BYTES = 1 + 4 + 3 + 3 + 4,
+	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4, /* at least */
 	VERTEX_BYTES = 11,
 	TRIANGLE_BYTES = 6,
 	MOTION_BYTES = 4 + 1 + 1 + 4,
@@ -71,6 +73,53 @@ static void get_node(struct reader *in, struct scenery_node *node)
 	get_floats(in, node->place.stretch, 4);
 }
 
+enum { TWO_SIDES = 1, BY_PIXEL = 2, MATERIAL_FLAGS = 3 };
+
+static void put_material(struct buffer *out, const struct scenery_material *material)
+{
+	buffer_put_u8(out, (uint8_t)(material->has_two_sides * TWO_SIDES +
+				     material->by_pixel * BY_PIXEL));
+	buffer_put_f32(out, material->opacity);
+	buffer_put(out, material->emissive, 3);
+	buffer_put(out, material->specular, 3);
+	buffer_put_f32(out, material->shininess);
+}
+
+static void get_rgb(struct reader *in, uint8_t rgb[3])
+{
+	for (int k = 0; k < 3; k++)
+		rgb[k] = reader_u8(in);
+}
+
+static void get_material(struct reader *in, struct scenery_material *material)
+{
+	const uint8_t flags = reader_u8(in);
+
+	in->failed = in->failed || flags > MATERIAL_FLAGS;
+	material->has_two_sides = flags & TWO_SIDES;
+	material->by_pixel = (flags & BY_PIXEL) != 0;
+	material->opacity = reader_f32(in);
+	get_rgb(in, material->emissive);
+	get_rgb(in, material->specular);
+	material->shininess = reader_f32(in);
+}
+
+static void put_fog(struct buffer *out, const struct scenery_fog *fog)
+{
+	buffer_put_f32(out, fog->range_m);
+	buffer_put_u8(out, fog->is_exponential);
+	buffer_put(out, fog->rgb, 3);
+	buffer_put_u32(out, fog->layer);
+}
+
+static void get_fog(struct reader *in, struct scenery_fog *fog)
+{
+	fog->range_m = reader_f32(in);
+	fog->is_exponential = get_flag(in);
+	get_rgb(in, fog->rgb);
+	fog->layer = reader_u32(in);
+}
+
 /* Numbers of one kind stand together, which compresses better. */
 static void put_mesh(struct buffer *out, const struct scenery_mesh *mesh)
 {
@@ -79,7 +128,7 @@ static void put_mesh(struct buffer *out, const struct scenery_mesh *mesh)
 	buffer_put_u32(out, mesh->node);
 	put_floats(out, mesh->origin_m, 3);
 	buffer_put_f32(out, mesh->step_m);
-	buffer_put_u8(out, mesh->has_two_sides);
+	buffer_put_u32(out, mesh->material);
 	buffer_put_u32(out, mesh->vertex_count);
 	buffer_put_u32(out, mesh->triangle_count);
 	for (int k = 0; k < 3; k++)
@@ -94,7 +143,7 @@ static void put_mesh(struct buffer *out, const struct scenery_mesh *mesh)
 			buffer_put_u16(out, mesh->triangles[t][k]);
 }
 
-static int get_mesh(struct reader *in, struct scenery_mesh *mesh)
+static int get_mesh(struct reader *in, struct scenery_mesh *mesh, uint8_t version)
 {
 	uint64_t needed;
 	struct bytes colours;
@@ -102,7 +151,8 @@ static int get_mesh(struct reader *in, struct scenery_mesh *mesh)
 	mesh->node = reader_u32(in);
 	get_floats(in, mesh->origin_m, 3);
 	mesh->step_m = reader_f32(in);
-	mesh->has_two_sides = get_flag(in);
+	/* a plain object's two materials differ in their sides */
+	mesh->material = version == VERSION_PLAIN ? get_flag(in) : reader_u32(in);
 	mesh->vertex_count = reader_u32(in);
 	mesh->triangle_count = reader_u32(in);
 	needed = (uint64_t)mesh->vertex_count * VERTEX_BYTES +
@@ -228,6 +278,10 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 	buffer_put_u32(out, scenery->number_count);
 	buffer_put_u32(out, scenery->layer_count);
 	buffer_put_u32(out, scenery->title_count);
+	buffer_put_u32(out, scenery->material_count);
+	for (uint32_t i = 0; i < scenery->material_count; i++)
+		put_material(out, &scenery->materials[i]);
+	put_fog(out, &scenery->fog);
 	for (uint32_t i = 0; i < scenery->node_count; i++)
 		put_node(out, &scenery->nodes[i]);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
@@ -279,7 +333,22 @@ static uint32_t get_count(struct reader *in, uint32_t most, size_t bytes_each)
 	return in->failed ? 0 : count;
 }
 
-static int get_counts(struct reader *in, struct scenery *out)
+enum { PLAIN_MATERIALS = 2 };
+
+static void get_looks(struct reader *in, struct scenery *out, uint8_t version)
+{
+	if (version != VERSION_PLAIN) {
+		for (uint32_t i = 0; i < out->material_count; i++)
+			get_material(in, &out->materials[i]);
+		get_fog(in, &out->fog);
+		return;
+	}
+	for (uint32_t i = 0; i < PLAIN_MATERIALS; i++)
+		out->materials[i] = (struct scenery_material){ .has_two_sides = i, .opacity = 1 };
+	out->fog.layer = SCENERY_NONE;
+}
+
+static int get_counts(struct reader *in, struct scenery *out, uint8_t version)
 {
 	uint32_t meshes;
 
@@ -291,8 +360,13 @@ static int get_counts(struct reader *in, struct scenery *out)
 	out->number_count = get_count(in, SCENERY_NUMBERS_MAX, 4);
 	out->layer_count = get_count(in, SCENERY_LAYERS_MAX, LAYER_BYTES);
 	out->title_count = get_count(in, SCENERY_TITLES_MAX, TITLE_BYTES);
+	if (version != VERSION_PLAIN)
+		out->material_count = get_count(in, SCENERY_MATERIALS_MAX, MATERIAL_BYTES);
+	else
+		out->material_count = PLAIN_MATERIALS;
 	if (in->failed)
 		return -EBADMSG;
+	out->materials = calloc(out->material_count + 1, sizeof(*out->materials));
 	out->nodes = calloc(out->node_count + 1, sizeof(*out->nodes));
 	out->meshes = calloc(meshes + 1, sizeof(*out->meshes));
 	out->motions = calloc(out->motion_count + 1, sizeof(*out->motions));
@@ -301,24 +375,26 @@ static int get_counts(struct reader *in, struct scenery *out)
 	out->numbers = calloc(out->number_count + 1, sizeof(*out->numbers));
 	out->layers = calloc(out->layer_count + 1, sizeof(*out->layers));
 	out->titles = calloc(out->title_count + 1, sizeof(*out->titles));
-	if (!out->nodes || !out->meshes || !out->motions || !out->touches || !out->tracks ||
-	    !out->numbers || !out->layers || !out->titles)
+	if (!out->materials || !out->nodes || !out->meshes || !out->motions || !out->touches ||
+	    !out->tracks || !out->numbers || !out->layers || !out->titles)
 		return -ENOMEM;
 	out->mesh_count = meshes;
 	return 0;
 }
 
-static int get_raw(struct scenery *out, struct bytes raw)
+static int get_raw(struct scenery *out, struct bytes raw, uint8_t version)
 {
 	struct reader in;
 	int rc;
 
 	reader_init(&in, raw);
-	rc = get_counts(&in, out);
+	rc = get_counts(&in, out, version);
+	if (rc == 0)
+		get_looks(&in, out, version);
 	for (uint32_t i = 0; rc == 0 && i < out->node_count; i++)
 		get_node(&in, &out->nodes[i]);
 	for (uint32_t i = 0; rc == 0 && i < out->mesh_count; i++)
-		rc = get_mesh(&in, &out->meshes[i]);
+		rc = get_mesh(&in, &out->meshes[i], version);
 	if (rc == 0)
 		rc = get_motions(&in, out);
 	if (rc == 0) {
@@ -340,7 +416,8 @@ int scenery_decode(struct scenery *out, struct bytes object)
 
 	*out = (struct scenery){ 0 };
 	if (object.size < HEADER_BYTES || object.size > OBJECT_MAX ||
-	    memcmp(object.data, magic, sizeof(magic)) != 0 || object.data[4] != VERSION)
+	    memcmp(object.data, magic, sizeof(magic)) != 0 ||
+	    (object.data[4] != VERSION && object.data[4] != VERSION_PLAIN))
 		return -EBADMSG;
 	reader_init(&in, object);
 	(void)reader_bytes(&in, 5);
@@ -357,7 +434,7 @@ int scenery_decode(struct scenery *out, struct bytes object)
 	if (ZSTD_decompress(raw, raw_bytes, packed.data, packed.size) != raw_bytes)
 		rc = -EBADMSG;
 	if (rc == 0)
-		rc = get_raw(out, (struct bytes){ raw, raw_bytes });
+		rc = get_raw(out, (struct bytes){ raw, raw_bytes }, object.data[4]);
 	free(raw);
 	if (rc < 0)
 		scenery_finish(out);

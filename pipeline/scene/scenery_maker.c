@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_mesh.h"
 
+const struct scenery_material scenery_plain = { .opacity = 1 };
 const struct scenery_place scenery_at_rest = { .turn = { 0, 0, 0, 1 },
 					       .scale = { 1, 1, 1 },
 					       .stretch = { 0, 0, 0, 1 } };
@@ -37,14 +38,38 @@ int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *nod
 	return 0;
 }
 
-static int find_sheet(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+static bool are_equal(const struct scenery_material *a, const struct scenery_material *b)
+{
+	return a->has_two_sides == b->has_two_sides && a->by_pixel == b->by_pixel &&
+	       a->opacity == b->opacity && a->shininess == b->shininess &&
+	       memcmp(a->emissive, b->emissive, sizeof(a->emissive)) == 0 &&
+	       memcmp(a->specular, b->specular, sizeof(a->specular)) == 0;
+}
+
+static int find_material(struct scenery_maker *maker, const struct scenery_material *material,
+			 uint32_t *number)
+{
+	struct scenery *out = &maker->out;
+	int rc;
+
+	for (*number = 0; *number < out->material_count; (*number)++)
+		if (are_equal(&out->materials[*number], material))
+			return 0;
+	rc = ARRAY_RESERVE(out->materials, maker->material_room, (uint64_t)*number + 1,
+			   SCENERY_MATERIALS_MAX);
+	if (rc == 0)
+		out->materials[out->material_count++] = *material;
+	return rc;
+}
+
+static int find_sheet(struct scenery_maker *maker, uint32_t node, uint32_t material,
 		      struct scenery_sheet **found)
 {
 	int rc;
 
 	for (uint32_t i = maker->sheet_count; i-- > 0;) {
 		*found = &maker->sheets[i];
-		if ((*found)->node == node && (*found)->has_two_sides == has_two_sides)
+		if ((*found)->node == node && (*found)->material == material)
 			return 0;
 	}
 	rc = ARRAY_RESERVE(maker->sheets, maker->sheet_room, (uint64_t)maker->sheet_count + 1,
@@ -52,22 +77,28 @@ static int find_sheet(struct scenery_maker *maker, uint32_t node, bool has_two_s
 	if (rc < 0)
 		return rc;
 	*found = &maker->sheets[maker->sheet_count++];
-	**found = (struct scenery_sheet){ .node = node, .has_two_sides = has_two_sides };
+	**found = (struct scenery_sheet){ .node = node, .material = material };
 	return 0;
 }
 
-int scenery_add_surface(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
+			const struct scenery_material *material,
 			const struct soup_triangle *triangles, uint32_t count, float crease_rad)
 {
-	struct scenery_sheet *sheet;
+	struct scenery_sheet *sheet = NULL;
+	uint32_t number;
 	int rc;
 
 	if (count == 0)
 		return 0;
-	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count)
+	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
+	    (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
 		return -EFBIG;
+	maker->clear_count += material->opacity < 1 ? count : 0;
 	maker->triangle_count += count;
-	rc = find_sheet(maker, node, has_two_sides, &sheet);
+	rc = find_material(maker, material, &number);
+	if (rc == 0)
+		rc = find_sheet(maker, node, number, &sheet);
 	return rc < 0 ? rc : scenery_sheet_add(sheet, triangles, count, crease_rad);
 }
 
@@ -124,6 +155,9 @@ int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motio
 int scenery_maker_end(struct scenery_maker *maker, struct scenery *out)
 {
 	int rc = 0;
+
+	if (!(maker->out.fog.range_m > 0))
+		maker->out.fog.layer = SCENERY_NONE;
 
 	for (uint32_t i = 0; i < maker->sheet_count && rc == 0; i++)
 		rc = scenery_sheet_meshes(&maker->sheets[i], &maker->out, &maker->mesh_room);

@@ -13,10 +13,13 @@ struct scenery_sheet;
 struct scenery_maker {
 	struct scenery out; /* its meshes are made at the end */
 	uint32_t node_room, motion_room, touch_room, track_room, number_room, mesh_room;
+	uint32_t material_room, clear_count;
 	struct scenery_sheet *sheets; /* owned */
 	uint32_t sheet_count, sheet_room, triangle_count;
 };
 
+/* A dull, solid surface with one side, in the colours of its corners. */
+extern const struct scenery_material scenery_plain;
 /* A place that changes nothing. */
 extern const struct scenery_place scenery_at_rest;
 /* Sets out to the quaternion of a turn about an axis of any length; one without a length turns
@@ -27,9 +30,10 @@ void scenery_turn(float out[4], const float axis[3], float angle_rad);
 
 must_check int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node,
 				uint32_t *number);
-/* Adds triangles in the node's metres. Edges where faces meet at more than crease_rad stay sharp;
- * across others light is smooth. */
-must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node, bool has_two_sides,
+/* Adds triangles in the node's metres. Equal materials are kept once. Edges where faces meet at
+ * more than crease_rad stay sharp; across others light is smooth. */
+must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
+				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,
 				   float crease_rad);
 /* Tracks follow that are added after it. */

@@ -241,8 +241,7 @@ static int add_triangle(struct filling *filling, const struct scenery_corner cor
 int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,
 			 uint32_t *mesh_room)
 {
-	struct filling filling = { .mesh = { .node = sheet->node,
-					     .has_two_sides = sheet->has_two_sides } };
+	struct filling filling = { .mesh = { .node = sheet->node, .material = sheet->material } };
 	int rc = 0;
 
 	if (sheet->count == 0)

@@ -11,8 +11,7 @@ struct scenery_corner {
 };
 
 struct scenery_sheet {
-	uint32_t node;
-	bool has_two_sides;
+	uint32_t node, material;
 	struct scenery_corner (*triangles)[3]; /* owned */
 	uint32_t count, room;
 };

@@ -3,9 +3,12 @@
 #include "pipeline/scene/vrml_scenery.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 #include "base/map.h"
+#include "geometry/vec.h"
+#include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_graph.h"
 #include "pipeline/scene/vrml_motions.h"
 #include "pipeline/scene/vrml_shapes.h"
@@ -18,6 +21,7 @@ struct walk {
 	struct vrml_instances instances;
 	struct map moving; /* node -> enum moving; none: not judged yet */
 	struct diagnostics *diagnostics, *warnings;
+	uint32_t root; /* node of the scenery that stands for the file */
 	uint32_t visits, depth;
 	bool has_pictures;
 };
@@ -157,6 +161,39 @@ static float crease_of(const struct vrml_node *geometry)
 	return crease > 0 ? crease : 0;
 }
 
+/* Sets what a Material and the sides of a geometry say, and the colour of its surface. A highlight
+ * is lost between the corners of coarse shapes, so it is computed at each pixel. */
+static void get_material(struct scenery_material *out, uint8_t rgb[3],
+			 const struct vrml_node *material, const struct vrml_node *geometry)
+{
+	static const float grey[3] = { 0.8f, 0.8f, 0.8f }, black[3];
+	float diffuse[3], emissive[3], specular[3];
+
+	*out = scenery_plain;
+	out->has_two_sides = vrml_field_named(geometry->type, "solid", 5) >= 0 &&
+			     !vrml_get_integer(geometry, "solid", 1);
+	vrml_colour(rgb, grey);
+	if (!material)
+		return;
+	vrml_get_floats(diffuse, material, "diffuseColor", 3, grey);
+	vrml_get_floats(emissive, material, "emissiveColor", 3, black);
+	vrml_get_floats(specular, material, "specularColor", 3, black);
+	vrml_colour(rgb, diffuse);
+	vrml_colour(out->emissive, emissive);
+	vrml_colour(out->specular, specular);
+	out->by_pixel = out->specular[0] || out->specular[1] || out->specular[2];
+	if (out->by_pixel)
+		out->shininess = vec_least(
+			vec_most(128 * vrml_get_float(material, "shininess", 0.2f), 1), 128);
+	out->opacity = vec_least(1 - vrml_get_float(material, "transparency", 0), 1);
+}
+
+/* What nobody can see is left out. */
+static bool is_visible(const struct scenery_material *material)
+{
+	return material->opacity >= 1.0f / 255;
+}
+
 static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_t node,
 		       const float place[16], bool is_mirrored)
 {
@@ -164,25 +201,26 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	const struct vrml_node *material = vrml_node_of(look, "material", "Material");
 	const struct vrml_node *geometry = vrml_get_node(shape, "geometry");
 	struct soup soup = { .texture = SOUP_NO_TEXTURE };
-	uint8_t rgb[3] = { 204, 204, 204 };
-	bool has_two_sides;
+	struct scenery_material kept;
+	uint8_t rgb[3];
 	int rc;
 
 	if (!geometry)
 		return 0;
-	if (material)
-		vrml_material_colour(rgb, material);
+	get_material(&kept, rgb, material, geometry);
+	if (material && is_moving(walk, material))
+		kept.opacity = 1; /* its node's */
+	if (!is_visible(&kept))
+		return 0;
 	walk->has_pictures |= look && vrml_get_node(look, "texture");
 	memcpy(soup.place, place, sizeof(soup.place));
 	rc = vrml_shape_add(&soup, geometry, rgb, is_mirrored, walk->diagnostics);
 	if (rc == 0)
 		diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
 				"%s has no surface; it was left out", geometry->type->name);
-	has_two_sides = vrml_field_named(geometry->type, "solid", 5) >= 0 &&
-			!vrml_get_integer(geometry, "solid", 1);
 	if (rc > 0) {
-		rc = scenery_add_surface(walk->maker, node, has_two_sides, soup.triangles,
-					 soup.count, crease_of(geometry));
+		rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles, soup.count,
+					 crease_of(geometry));
 		if (rc < 0)
 			rc = fail(walk, rc, geometry);
 	}
@@ -203,6 +241,32 @@ static int add_shape(struct walk *walk, const struct vrml_node *shape, uint32_t 
 			return fail(walk, rc, shape);
 	}
 	return add_surface(walk, shape, node, place, is_mirrored);
+}
+
+/* ---- fog */
+
+/* Keeps the first fog of all files, as a browser shows the first one that it finds. */
+static void add_fog(const struct walk *walk, const struct vrml_node *node)
+{
+	struct scenery_fog *fog = &walk->maker->out.fog;
+	const struct scenery_node *root = &walk->maker->out.nodes[walk->root];
+	const struct vrml_value *type = vrml_get(node, "fogType");
+	const float range = vrml_get_float(node, "visibilityRange", 0) * root->place.scale[0];
+	float colour[3];
+
+	if (!(range > 0))
+		return;
+	if (fog->range_m > 0) {
+		diagnostics_add(walk->warnings, 0, node->file, node->line,
+				"there is a Fog already; this one was left out");
+		return;
+	}
+	vrml_get_floats(colour, node, "color", 3, (const float[3]){ 1, 1, 1 });
+	vrml_colour(fog->rgb, colour);
+	fog->range_m = range;
+	fog->layer = root->layer;
+	fog->is_exponential =
+		type && type->count > 0 && strcmp(type->strings[0], "EXPONENTIAL") == 0;
 }
 
 /* ---- groups */
@@ -233,6 +297,8 @@ static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
 				       VRML_VISITS_MAX);
 	if (vrml_is(of, "Shape"))
 		return add_shape(walk, of, node, parent, is_mirrored);
+	if (vrml_is(of, "Fog"))
+		add_fog(walk, of);
 	memcpy(place, parent, sizeof(place));
 	if (vrml_is(of, "Transform")) {
 		float own[16];
@@ -273,7 +339,9 @@ static int add_all(struct walk *walk, const struct vrml *scene, uint32_t node)
 int vrml_scenery_add(struct scenery_maker *maker, const struct vrml *scene, uint32_t node,
 		     struct diagnostics *diagnostics, struct diagnostics *warnings)
 {
-	struct walk walk = { .maker = maker, .diagnostics = diagnostics, .warnings = warnings };
+	struct walk walk = {
+		.maker = maker, .root = node, .diagnostics = diagnostics, .warnings = warnings
+	};
 	const uint32_t errors = diagnostics ? diagnostics->error_count : 0;
 	int rc = add_all(&walk, scene, node);
 

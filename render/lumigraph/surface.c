@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "geometry/appearance.h"
 #include "geometry/light.h"
 #include "geometry/vec.h"
 #include "render/lumigraph/aim.h"
@@ -29,7 +30,14 @@ const char surface_vertex_glsl[] =
 	"#ifdef RAKE\n"
 	"varying vec4 v_rake;\n"
 	"#endif\n"
+	"#ifdef FOG\n"
+	"uniform float u_far;\n" /* 1 / range */
+	"varying vec3 v_away;\n" /* from the eye; 1 is the range */
+	"#endif\n"
 	"void use_tools(vec3 p, vec3 n) {\n"
+	"#ifdef FOG\n"
+	"	v_away = p * u_far;\n"
+	"#endif\n"
 	"#ifdef CUT\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
 	"#endif\n"
@@ -70,6 +78,11 @@ const char surface_tools_glsl[] =
 	"#ifdef CUT\n"
 	"varying float v_cut;\n"
 	"#endif\n"
+	"#ifdef FOG\n"
+	"uniform vec4 u_fog;\n" /* colour; how much of it is seen */
+	"uniform float u_thick;\n"
+	"varying vec3 v_away;\n"
+	"#endif\n"
 	"vec3 lit_by_tools(vec3 colour) {\n"
 	"#ifdef RAKE\n"
 	"	colour = min(colour * rake_light(v_rake, u_rake), 1.0);\n"
@@ -77,6 +90,10 @@ const char surface_tools_glsl[] =
 	"#ifdef CUT\n"
 	"	if (!gl_FrontFacing)\n"
 	"		colour = vec3(0.62, 0.28, 0.15);\n" /* the laterite colour of the theme */
+	"#endif\n"
+	"#ifdef FOG\n"
+	"	float fog = fog_share(length(v_away), u_thick > 0.5);\n"
+	"	colour = mix(colour, u_fog.rgb, fog * u_fog.a);\n"
 	"#endif\n"
 	"	return colour;\n"
 	"}\n"
@@ -237,8 +254,7 @@ static void find_uniforms(struct surface_program *p)
 	p->depth = glGetUniformLocation(p->program, "u_depth");
 	p->slack = glGetUniformLocation(p->program, "u_slack");
 	p->range = glGetUniformLocation(p->program, "u_range");
-	p->rake = glGetUniformLocation(p->program, "u_rake");
-	p->cut = glGetUniformLocation(p->program, "u_cut");
+	surface_find_tools(&p->tools, p->program);
 }
 
 static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
@@ -268,6 +284,10 @@ const char *const surface_defines[SURFACE_TOOLS] = {
 	[SURFACE_RAKE] = "#define RAKE\n",
 	[SURFACE_CUT] = "#define CUT\n",
 	[SURFACE_RAKE | SURFACE_CUT] = "#define RAKE\n#define CUT\n",
+	[SURFACE_FOG] = "#define FOG\n",
+	[SURFACE_FOG | SURFACE_RAKE] = "#define FOG\n#define RAKE\n",
+	[SURFACE_FOG | SURFACE_CUT] = "#define FOG\n#define CUT\n",
+	[SURFACE_FOG | SURFACE_RAKE | SURFACE_CUT] = "#define FOG\n#define RAKE\n#define CUT\n",
 };
 
 static int init_plain(struct surface_program *p, unsigned tools, const char *dissolve)
@@ -282,8 +302,8 @@ static int init_plain(struct surface_program *p, unsigned tools, const char *dis
 		.vertex = (const char *const[]){ defines, light_glsl, vertex, surface_vertex_glsl,
 						 plain_vertex, NULL },
 		.fragment = (const char *const[]){ "precision mediump float;\n", defines, fragment,
-						   surface_tools_glsl, dissolve, surface_plain_glsl,
-						   NULL },
+						   appearance_fog_glsl, surface_tools_glsl,
+						   dissolve, surface_plain_glsl, NULL },
 		.attributes = surface_attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -307,8 +327,8 @@ static int init_blended(struct surface_program *p, const struct tiles *tiles, in
 		.vertex = (const char *const[]){ defines, constants, light_glsl, vertex,
 						 surface_vertex_glsl, blended_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, defines, constants, fragment,
-						   surface_tools_glsl, dissolve, blended_fragment,
-						   NULL },
+						   appearance_fog_glsl, surface_tools_glsl,
+						   dissolve, blended_fragment, NULL },
 		.attributes = surface_attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -357,7 +377,36 @@ void surface_finish(struct surface *surface)
 unsigned surface_tools(const struct surface_frame *frame)
 {
 	return (frame->rake.on && !frame->shares ? SURFACE_RAKE : 0u) |
-	       (view_is_cut(frame->view) ? SURFACE_CUT : 0u);
+	       (view_is_cut(frame->view) ? SURFACE_CUT : 0u) |
+	       (frame->fog.share > 0 && !frame->shares ? SURFACE_FOG : 0u);
+}
+
+void surface_find_tools(struct surface_tool_uniforms *out, GLuint program)
+{
+	out->rake = glGetUniformLocation(program, "u_rake");
+	out->cut = glGetUniformLocation(program, "u_cut");
+	out->far = glGetUniformLocation(program, "u_far");
+	out->fog = glGetUniformLocation(program, "u_fog");
+	out->thick = glGetUniformLocation(program, "u_thick");
+}
+
+void surface_set_tools(const struct surface_tool_uniforms *at, const struct surface_frame *frame)
+{
+	const struct surface_fog *fog = &frame->fog;
+	float towards[3];
+
+	if (at->rake >= 0) {
+		rake_direction(&frame->rake, frame->view->right, frame->view->up,
+			       frame->view->forward, towards);
+		glUniform3fv(at->rake, 1, towards);
+	}
+	if (at->cut >= 0)
+		glUniform4fv(at->cut, 1, frame->view->cut);
+	if (at->fog >= 0) {
+		glUniform1f(at->far, 1 / fog->range_m);
+		glUniform1f(at->thick, fog->is_exponential ? 1 : 0);
+		glUniform4f(at->fog, fog->rgb[0], fog->rgb[1], fog->rgb[2], fog->share);
+	}
 }
 
 /* Returns the program with the active tools; builds it where it is missing. */
@@ -382,14 +431,7 @@ void surface_begin(struct surface *surface, const struct surface_frame *frame, i
 		    (float)lattice->step_m);
 	glUniform4f(p->sun, sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
 	glUniform1f(p->share, frame->shares ? 1 : 0);
-	if (p->rake >= 0) {
-		float towards[3];
-		rake_direction(&frame->rake, frame->view->right, frame->view->up,
-			       frame->view->forward, towards);
-		glUniform3fv(p->rake, 1, towards);
-	}
-	if (p->cut >= 0)
-		glUniform4fv(p->cut, 1, frame->view->cut);
+	surface_set_tools(&p->tools, frame);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
 	if (surface_faces(program) == 0)

@@ -11,19 +11,32 @@
 #include "render/patches/dissolve.h"
 #include "render/patches/patch_buffers.h"
 
-struct surface_program {
-	GLuint program;
-	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range,
-		rake, cut;
-};
-
 /* A program for each number of faces (none means the patch's own colours, the cheapest), and as
  * many again for patches that dissolve, which discard pixels. */
 enum { SURFACE_PROGRAMS = 2 * (PLAN_ENTRIES + 1) };
 
 /* The same set for each combination of active tools. It is built when first drawn with, because
  * most visits need none. */
-enum { SURFACE_RAKE = 1, SURFACE_CUT = 2, SURFACE_TOOLS = 4 };
+enum { SURFACE_RAKE = 1, SURFACE_CUT = 2, SURFACE_FOG = 4, SURFACE_TOOLS = 8 };
+
+/* Fog of the scenery (format/scenery.h), which hides the scan too. Zeroed is none. */
+struct surface_fog {
+	float share; /* how much of it is seen, 0 to 1 */
+	float range_m;
+	bool is_exponential;
+	float rgb[3];
+};
+
+/* The places of the uniforms that the tools have; -1 where the program lacks one. */
+struct surface_tool_uniforms {
+	GLint rake, cut, far, fog, thick;
+};
+
+struct surface_program {
+	GLuint program;
+	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range;
+	struct surface_tool_uniforms tools;
+};
 
 struct surface {
 	struct surface_program of[SURFACE_TOOLS][SURFACE_PROGRAMS];
@@ -45,19 +58,25 @@ struct surface_frame {
 	const struct depth *depth;
 	const struct repository *repository;
 	struct rake rake; /* the raking light; the section plane is in the view */
+	struct surface_fog fog;
 	/* faces have the weight of their blend, whatever they see (the eight corners) */
 	bool even;
 	bool shares; /* draws the share of a pixel that images colour, instead of its colour */
 };
 
-/* Returns the active tools, bits of SURFACE_RAKE and SURFACE_CUT. */
+/* Returns the active tools, bits of SURFACE_RAKE, SURFACE_CUT and SURFACE_FOG. */
 unsigned surface_tools(const struct surface_frame *frame);
+
+/* Finds and sets the uniforms of the tools, for the program in use. */
+void surface_find_tools(struct surface_tool_uniforms *out, GLuint program);
+void surface_set_tools(const struct surface_tool_uniforms *at, const struct surface_frame *frame);
 
 /* The GLSL of the cheapest programs, for others that draw surfaces under the same light and tools.
  * A vertex shader is: surface_defines of the tools, light_glsl, rake_vertex_glsl where the tools
  * have it, surface_vertex_glsl, and a main() that calls unit_normal(), own_colour() and use_tools()
  * and sets v_colour. A fragment shader is: a precision, the defines, rake_fragment_glsl likewise,
- * surface_tools_glsl, surface_whole_glsl or surface_dissolve_glsl, surface_plain_glsl. Uniforms are
+ * appearance_fog_glsl, surface_tools_glsl, surface_whole_glsl or surface_dissolve_glsl,
+ * surface_plain_glsl or a main() that does the same. Uniforms are
  * those of surface_begin. */
 extern const char *const surface_defines[SURFACE_TOOLS];
 extern const char surface_vertex_glsl[], surface_tools_glsl[], surface_plain_glsl[];

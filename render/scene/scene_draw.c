@@ -226,6 +226,7 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.depth = &scene->depth,
 		.repository = &scene->repository,
 		.rake = scene->tools.rake,
+		.fog = scene_fog(scene),
 		.even = scene->options.mode == SCENE_CORNERS,
 		.shares = shares,
 	};

@@ -47,6 +47,24 @@ bool scene_step_scenery(struct scene *scene, float passed_ms)
 	return is_shown(scene) && pose_step(&scene->scenery.pose, passed_ms);
 }
 
+struct surface_fog scene_fog(const struct scene *scene)
+{
+	const struct pose *pose = &scene->scenery.pose;
+	const struct scenery_fog *fog = &scene->scenery.content.fog;
+	struct surface_fog out = { 0 };
+
+	if (!is_shown(scene) || !(fog->range_m > 0))
+		return out;
+	out.share = pose->appeared;
+	if (fog->layer != SCENERY_NONE)
+		out.share *= pose->layer_shares[fog->layer];
+	out.range_m = fog->range_m;
+	out.is_exponential = fog->is_exponential;
+	for (int k = 0; k < 3; k++)
+		out.rgb[k] = (float)fog->rgb[k] / 255;
+	return out;
+}
+
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 {
 	if (is_shown(scene) && !frame->shares)

@@ -8,6 +8,8 @@
 must_check int scene_open_scenery(struct scene *scene, struct bytes bytes);
 /* Lets time pass; returns whether the picture changes. */
 bool scene_step_scenery(struct scene *scene, float passed_ms);
+/* Returns the fog that is seen now. */
+struct surface_fog scene_fog(const struct scene *scene);
 /* Draws it over the patches. */
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame);
 /* Returns the node of the scenery that the ray meets before *distance_m, which is lowered to it, or

@@ -1,122 +1,68 @@
 /* One buffer of vertices and one of indices for all meshes; a matrix for each node. */
 #include "render/scenery/scenery_picture.h"
 
+#include <errno.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "geometry/light.h"
+#include "base/compiler.h"
 #include "geometry/vec.h"
-
-/* Positions are in metres relative to the eye, so that floats suffice anywhere in the model. A back
- * that is seen has the light of its own side. */
-static const char scenery_vertex[] =
-	"uniform mat4 u_model;\n"
-	"uniform vec3 u_turned[3];\n" /* columns */
-	"uniform float u_sides;\n"
-	"void main() {\n"
-	"	vec3 p = (u_model * vec4(a_position, 1.0)).xyz;\n"
-	"	vec3 e = unit_normal();\n"
-	"	vec3 n = normalize(u_turned[0] * e.x + u_turned[1] * e.y + u_turned[2] * e.z);\n"
-	"	if (u_sides > 0.5 && dot(n, p) > 0.0)\n"
-	"		n = -n;\n"
-	"	v_colour = vec4(own_colour(n), 1.0);\n"
-	"	use_tools(p, n);\n"
-	"	gl_Position = u_clip * vec4(p, 1.0);\n"
-	"}\n";
-
-static int build(struct scenery_program *p, unsigned tools, bool dissolves)
-{
-	const char *defines = surface_defines[tools], *vertex = "", *fragment = "";
-	int rc;
-
-	if (tools & SURFACE_RAKE) {
-		vertex = rake_vertex_glsl;
-		fragment = rake_fragment_glsl;
-	}
-	const struct gl_program_source source = {
-		.name = "scenery",
-		.vertex = (const char *const[]){ defines, light_glsl, vertex, surface_vertex_glsl,
-						 scenery_vertex, NULL },
-		.fragment = (const char *const[]){ "precision mediump float;\n", defines, fragment,
-						   surface_tools_glsl,
-						   dissolves ? surface_dissolve_glsl
-							     : surface_whole_glsl,
-						   surface_plain_glsl, NULL },
-		.attributes = surface_attributes,
-	};
-	rc = gl_program_build(&p->program, &source);
-	if (rc < 0)
-		return rc;
-	p->clip = glGetUniformLocation(p->program, "u_clip");
-	p->model = glGetUniformLocation(p->program, "u_model");
-	p->normal = glGetUniformLocation(p->program, "u_turned");
-	p->sides = glGetUniformLocation(p->program, "u_sides");
-	p->sun = glGetUniformLocation(p->program, "u_sun");
-	p->share = glGetUniformLocation(p->program, "u_share");
-	p->range = glGetUniformLocation(p->program, "u_range");
-	p->rake = glGetUniformLocation(p->program, "u_rake");
-	p->cut = glGetUniformLocation(p->program, "u_cut");
-	return 0;
-}
-
-/* Returns the program, built where it is missing; NULL: the driver refuses it. */
-static const struct scenery_program *program_of(struct scenery_picture *picture, unsigned tools,
-						bool dissolves)
-{
-	const unsigned i = tools + (dissolves ? SURFACE_TOOLS : 0);
-
-	if (!picture->of[i].program && !picture->lacks[i])
-		picture->lacks[i] = build(&picture->of[i], tools, dissolves) < 0;
-	return picture->lacks[i] ? NULL : &picture->of[i];
-}
 
 int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery)
 {
-	GLsizeiptr vertices = 0, indices = 0;
+	struct scenery_offset end = { 0 };
 
 	scenery_picture_drop(picture);
+	picture->offsets = calloc((size_t)scenery->mesh_count + 1, sizeof(*picture->offsets));
+	if (!picture->offsets)
+		return -ENOMEM;
 	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
-		vertices += (GLsizeiptr)(scenery->meshes[i].vertex_count *
-					 sizeof(struct scenery_vertex));
-		indices += (GLsizeiptr)(scenery->meshes[i].triangle_count * 3 * sizeof(uint16_t));
+		picture->offsets[i] = end;
+		end.vertex_bytes += scenery->meshes[i].vertex_count * sizeof(struct scenery_vertex);
+		end.index_bytes += scenery->meshes[i].triangle_count * 3 * sizeof(uint16_t);
 	}
 	glGenBuffers(1, &picture->vertices);
 	glGenBuffers(1, &picture->indices);
+	glGenBuffers(1, &picture->ordered);
 	glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
-	glBufferData(GL_ARRAY_BUFFER, vertices, NULL, GL_STATIC_DRAW);
+	glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)end.vertex_bytes, NULL, GL_STATIC_DRAW);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->indices);
-	glBufferData(GL_ELEMENT_ARRAY_BUFFER, indices, NULL, GL_STATIC_DRAW);
-	vertices = indices = 0;
+	glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)end.index_bytes, NULL, GL_STATIC_DRAW);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
 		const struct scenery_mesh *mesh = &scenery->meshes[i];
-		const GLsizeiptr vertex_bytes =
-			(GLsizeiptr)(mesh->vertex_count * sizeof(*mesh->vertices));
-		const GLsizeiptr index_bytes =
-			(GLsizeiptr)(mesh->triangle_count * sizeof(*mesh->triangles));
+		const struct scenery_offset *at = &picture->offsets[i];
 
-		glBufferSubData(GL_ARRAY_BUFFER, vertices, vertex_bytes, mesh->vertices);
-		glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, indices, index_bytes, mesh->triangles);
-		vertices += vertex_bytes;
-		indices += index_bytes;
+		glBufferSubData(GL_ARRAY_BUFFER, (GLintptr)at->vertex_bytes,
+				(GLsizeiptr)(mesh->vertex_count * sizeof(*mesh->vertices)),
+				mesh->vertices);
+		glBufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)at->index_bytes,
+				(GLsizeiptr)(mesh->triangle_count * sizeof(*mesh->triangles)),
+				mesh->triangles);
 	}
 	return gl_check("uploading scenery");
 }
 
 void scenery_picture_drop(struct scenery_picture *picture)
 {
-	if (picture->vertices)
-		glDeleteBuffers(1, &picture->vertices);
-	if (picture->indices)
-		glDeleteBuffers(1, &picture->indices);
-	picture->vertices = picture->indices = 0;
+	GLuint *const buffers[] = { &picture->vertices, &picture->indices, &picture->ordered };
+
+	for (size_t i = 0; i < ARRAY_COUNT(buffers); i++) {
+		if (*buffers[i])
+			glDeleteBuffers(1, buffers[i]);
+		*buffers[i] = 0;
+	}
+	free(picture->offsets);
+	free(picture->triangles);
+	picture->offsets = NULL;
+	picture->triangles = NULL;
+	scenery_order_finish(&picture->order);
 }
 
 void scenery_picture_finish(struct scenery_picture *picture)
 {
 	scenery_picture_drop(picture);
-	for (int i = 0; i < SCENERY_PROGRAMS; i++)
-		if (picture->of[i].program)
-			glDeleteProgram(picture->of[i].program);
+	scenery_programs_finish(&picture->programs);
 	*picture = (struct scenery_picture){ 0 };
 }
 
@@ -157,23 +103,31 @@ static void lattice_matrix(float out[16], const struct scenery_mesh *mesh, const
 static void set_frame(const struct scenery_program *p, const struct surface_frame *frame)
 {
 	const float *sun = frame->root->sun;
-	float towards[3];
 
 	glUseProgram(p->program);
 	glUniformMatrix4fv(p->clip, 1, GL_FALSE, frame->view->clip);
-	glUniform4f(p->sun, sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
-	glUniform1f(p->share, 0);
-	if (p->rake >= 0) {
-		rake_direction(&frame->rake, frame->view->right, frame->view->up,
-			       frame->view->forward, towards);
-		glUniform3fv(p->rake, 1, towards);
-	}
-	if (p->cut >= 0)
-		glUniform4fv(p->cut, 1, frame->view->cut);
+	for (size_t i = 0; i < ARRAY_COUNT(p->sun); i++)
+		glUniform4f(p->sun[i], sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
+	surface_set_tools(&p->tools, frame);
+}
+
+static void set_colour(GLint at, const uint8_t rgb[3], float fourth)
+{
+	glUniform4f(at, (float)rgb[0] / 255, (float)rgb[1] / 255, (float)rgb[2] / 255, fourth);
+}
+
+static void set_material(const struct scenery_program *p, const struct scenery_material *material)
+{
+	const uint8_t *rgb = material->emissive;
+
+	glUniform1f(p->opacity, material->opacity);
+	set_colour(p->specular, material->specular, material->shininess);
+	glUniform3f(p->emissive, (float)rgb[0] / 255, (float)rgb[1] / 255, (float)rgb[2] / 255);
 }
 
 static void set_mesh(const struct scenery_program *p, const struct scenery_mesh *mesh,
-		     const struct pose_node *node, const struct surface_frame *frame)
+		     const struct pose_node *node, const struct surface_frame *frame,
+		     bool has_two_sides)
 {
 	const float *m = node->matrix;
 	float model[16], turned[9];
@@ -185,59 +139,159 @@ static void set_mesh(const struct scenery_program *p, const struct scenery_mesh 
 	vec_cross(&turned[6], &m[0], &m[4]);
 	glUniformMatrix4fv(p->model, 1, GL_FALSE, model);
 	glUniform3fv(p->normal, 3, turned);
-	glUniform1f(p->sides, mesh->has_two_sides);
+	glUniform1f(p->sides, has_two_sides);
 	if (p->range >= 0)
 		glUniform2f(p->range, node->low, node->high);
-	if (mesh->has_two_sides || p->cut >= 0)
+	if (has_two_sides || p->tools.cut >= 0)
 		glDisable(GL_CULL_FACE);
 	else
 		glEnable(GL_CULL_FACE);
 }
 
-static void draw_mesh(const struct scenery_mesh *mesh, size_t vertex_bytes, size_t index_bytes)
+/* What stays the same while meshes are drawn. */
+struct drawing {
+	struct scenery_picture *picture;
+	const struct pose *pose;
+	const struct surface_frame *frame;
+	const struct scenery_program *used; /* NULL: none yet */
+};
+
+static unsigned features_of(const struct drawing *drawing, const struct scenery_material *material,
+			    struct dissolve_range range)
 {
+	const uint8_t *s = material->specular, *e = material->emissive;
+	const bool is_glossy = s[0] || s[1] || s[2] || e[0] || e[1] || e[2];
+
+	return surface_tools(drawing->frame) |
+	       (dissolve_is_whole(range) ? 0u : (unsigned)SCENERY_DISSOLVES) |
+	       (material->by_pixel ? (unsigned)SCENERY_BY_PIXEL : 0u) |
+	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u);
+}
+
+static bool is_seen(const struct drawing *drawing, uint32_t mesh)
+{
+	const struct scenery_mesh *of = &drawing->pose->scenery->meshes[mesh];
+	const struct pose_node *node = &drawing->pose->nodes[of->node];
+	const struct dissolve_range range = { node->low, node->high };
+	float centre[3], radius;
+
+	if (!dissolve_draws(range))
+		return false;
+	radius = ball_of(of, node->matrix, centre);
+	return view_sees_sphere(drawing->frame->view, centre, radius);
+}
+
+/* Sets up the program and the attributes of a mesh. Returns false where the driver has no program
+ * for it. */
+static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
+{
+	const struct scenery *scenery = drawing->pose->scenery;
+	const struct scenery_mesh *of = &scenery->meshes[mesh];
+	const struct scenery_material *material = &scenery->materials[of->material];
+	const struct pose_node *node = &drawing->pose->nodes[of->node];
+	const struct dissolve_range range = { node->low, node->high };
+	const struct scenery_program *p = scenery_programs_get(
+		&drawing->picture->programs, features_of(drawing, material, range));
+	const size_t first = drawing->picture->offsets[mesh].vertex_bytes;
 	const GLsizei stride = sizeof(struct scenery_vertex);
 
+	if (!p)
+		return false;
+	if (p != drawing->used)
+		set_frame(p, drawing->frame);
+	drawing->used = p;
+	set_material(p, material);
+	set_mesh(p, of, node, drawing->frame, material->has_two_sides);
 	glVertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, stride,
-			      (void *)(vertex_bytes + offsetof(struct scenery_vertex, place)));
+			      (void *)(first + offsetof(struct scenery_vertex, place)));
 	glVertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, stride,
-			      (void *)(vertex_bytes + offsetof(struct scenery_vertex, normal)));
+			      (void *)(first + offsetof(struct scenery_vertex, normal)));
 	glVertexAttribPointer(2, 3, GL_UNSIGNED_BYTE, GL_TRUE, stride,
-			      (void *)(vertex_bytes + offsetof(struct scenery_vertex, rgb)));
-	glDrawElements(GL_TRIANGLES, (GLsizei)(3 * mesh->triangle_count), GL_UNSIGNED_SHORT,
-		       (void *)index_bytes);
+			      (void *)(first + offsetof(struct scenery_vertex, rgb)));
+	return true;
+}
+
+static void draw_triangles(size_t index_bytes, uint32_t count)
+{
+	glDrawElements(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_SHORT, (void *)index_bytes);
+}
+
+static bool is_solid(const struct scenery *scenery, uint32_t mesh)
+{
+	return scenery->materials[scenery->meshes[mesh].material].opacity >= 1;
+}
+
+/* Lists the transparent triangles that are seen, in order, and uploads their corners. */
+static int prepare_ordered(struct drawing *drawing)
+{
+	struct scenery_picture *picture = drawing->picture;
+	const struct scenery *scenery = drawing->pose->scenery;
+	struct scenery_order *order = &picture->order;
+	int rc = 0;
+
+	order->count = 0;
+	for (uint32_t i = 0; i < scenery->mesh_count && rc == 0; i++)
+		if (!is_solid(scenery, i) && is_seen(drawing, i))
+			rc = scenery_order_add(order, drawing->pose, i,
+					       drawing->frame->view->eye_m);
+	if (rc < 0 || order->count == 0)
+		return rc;
+	scenery_order_sort(order);
+	if (!picture->triangles)
+		picture->triangles =
+			malloc(SCENERY_CLEAR_TRIANGLES_MAX * sizeof(*picture->triangles));
+	if (!picture->triangles)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < order->count; i++)
+		memcpy(picture->triangles[i],
+		       scenery->meshes[order->triangles[i].mesh]
+			       .triangles[order->triangles[i].triangle],
+		       sizeof(*picture->triangles));
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->ordered);
+	glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+		     (GLsizeiptr)(order->count * sizeof(*picture->triangles)), picture->triangles,
+		     GL_STREAM_DRAW);
+	return 0;
+}
+
+/* Blends what is transparent over the picture. Alpha, which says where the model is, only grows. */
+static void draw_ordered(struct drawing *drawing)
+{
+	const struct scenery_order *order = &drawing->picture->order;
+	uint32_t after;
+
+	if (prepare_ordered(drawing) < 0 || order->count == 0)
+		return;
+	glEnable(GL_BLEND);
+	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+	glDepthMask(GL_FALSE);
+	for (uint32_t i = 0; i < order->count; i = after) {
+		const uint32_t mesh = order->triangles[i].mesh;
+
+		for (after = i + 1; after < order->count && order->triangles[after].mesh == mesh;)
+			after++;
+		if (begin_mesh(drawing, mesh))
+			draw_triangles(i * sizeof(*drawing->picture->triangles), after - i);
+	}
+	glDepthMask(GL_TRUE);
+	glDisable(GL_BLEND);
 }
 
 void scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
 			  const struct surface_frame *frame)
 {
-	const struct scenery_program *used = NULL;
-	size_t vertex_bytes = 0, index_bytes = 0;
+	struct drawing drawing = { .picture = picture, .pose = pose, .frame = frame };
+	const struct scenery *scenery = pose->scenery;
 
 	glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->indices);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
-	for (uint32_t i = 0; i < pose->scenery->mesh_count; i++) {
-		const struct scenery_mesh *mesh = &pose->scenery->meshes[i];
-		const struct pose_node *node = &pose->nodes[mesh->node];
-		const struct dissolve_range range = { node->low, node->high };
-		const struct scenery_program *p;
-		float centre[3], radius = ball_of(mesh, node->matrix, centre);
-
-		p = dissolve_draws(range) && view_sees_sphere(frame->view, centre, radius)
-			    ? program_of(picture, surface_tools(frame), !dissolve_is_whole(range))
-			    : NULL;
-		if (p && p != used)
-			set_frame(p, frame);
-		if (p) {
-			set_mesh(p, mesh, node, frame);
-			draw_mesh(mesh, vertex_bytes, index_bytes);
-			used = p;
-		}
-		vertex_bytes += mesh->vertex_count * sizeof(*mesh->vertices);
-		index_bytes += mesh->triangle_count * sizeof(*mesh->triangles);
-	}
+	for (uint32_t i = 0; i < scenery->mesh_count; i++)
+		if (is_solid(scenery, i) && is_seen(&drawing, i) && begin_mesh(&drawing, i))
+			draw_triangles(picture->offsets[i].index_bytes,
+				       scenery->meshes[i].triangle_count);
+	draw_ordered(&drawing);
 	glDisable(GL_CULL_FACE);
 }
 

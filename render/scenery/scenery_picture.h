@@ -3,32 +3,31 @@
 #ifndef GOPURA_RENDER_SCENERY_SCENERY_PICTURE_H
 #define GOPURA_RENDER_SCENERY_SCENERY_PICTURE_H
 
-#include "render/lumigraph/surface.h"
 #include "render/scenery/pose.h"
-
-/* A program for each set of tools, and as many again for what dissolves. */
-enum { SCENERY_PROGRAMS = 2 * SURFACE_TOOLS };
-
-struct scenery_program {
-	GLuint program; /* 0: not built yet */
-	GLint clip, model, normal, sides, sun, share, range, rake, cut;
-};
+#include "render/scenery/scenery_order.h"
+#include "render/scenery/scenery_program.h"
 
 /* Zeroed is empty: nothing is built before there is scenery. */
 struct scenery_picture {
-	struct scenery_program of[SCENERY_PROGRAMS];
-	bool lacks[SCENERY_PROGRAMS]; /* the driver refused it */
+	struct scenery_programs programs;
 	GLuint vertices, indices;
+	GLuint ordered;             /* indices of transparent triangles, of the last frame */
+	uint16_t (*triangles)[3];   /* the same before they are uploaded; owned */
+	struct scenery_order order; /* of the last frame */
+	struct scenery_offset {
+		size_t vertex_bytes, index_bytes; /* in the buffers */
+	} * offsets;                              /* of each mesh; owned */
 };
 
-/* Uploads the meshes in place of any before. Errors as gl_check. */
+/* Uploads the meshes in place of any before. -ENOMEM, or as gl_check. */
 must_check int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery);
 /* Frees the meshes. */
 void scenery_picture_drop(struct scenery_picture *picture);
 /* Frees everything. */
 void scenery_picture_finish(struct scenery_picture *picture);
 
-/* Draws what the pose shows, with the depth test of the picture. Culling is off afterwards. */
+/* Draws what the pose shows, with the depth test of the picture: first what is solid, then what is
+ * transparent, from far to near. Culling and blending are off afterwards. */
 void scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
 			  const struct surface_frame *frame);
 

@@ -10,6 +10,7 @@
 struct little_scenery {
 	struct scenery scenery;
 	struct scenery_node nodes[3];
+	struct scenery_material material;
 	struct scenery_mesh meshes[2];
 	struct scenery_vertex vertices[2][4];
 	uint16_t triangles[2][2][3];
@@ -45,7 +46,6 @@ static inline void little_sheet(struct little_scenery *s, int mesh, uint32_t nod
 	memcpy(s->triangles[mesh], corners, sizeof(corners));
 	s->meshes[mesh] = (struct scenery_mesh){ .node = node,
 						 .step_m = 0.001f,
-						 .has_two_sides = true,
 						 .vertex_count = 4,
 						 .triangle_count = 2,
 						 .vertices = s->vertices[mesh],
@@ -61,6 +61,7 @@ static inline void little_scenery_init(struct little_scenery *s)
 	*s = (struct little_scenery){
 		.nodes = { little_node(SCENERY_NONE, SCENERY_NONE), little_node(0, SCENERY_NONE),
 			   little_node(SCENERY_NONE, 1) },
+		.material = { .has_two_sides = true, .opacity = 1 },
 		.motion = { .duration_s = 2, .returns = true, .track_count = 2 },
 		.touch = { .node = 0, .motion = 0 },
 		.tracks = { { .node = 1, .target = SCENERY_TURN, .key_count = 2 },
@@ -73,6 +74,7 @@ static inline void little_scenery_init(struct little_scenery *s)
 	little_sheet(s, 0, 1);
 	little_sheet(s, 1, 2);
 	s->scenery = (struct scenery){ .node_count = 3,
+				       .material_count = 1,
 				       .mesh_count = 2,
 				       .motion_count = 1,
 				       .touch_count = 1,
@@ -81,13 +83,15 @@ static inline void little_scenery_init(struct little_scenery *s)
 				       .layer_count = 2,
 				       .title_count = 3,
 				       .nodes = s->nodes,
+				       .materials = &s->material,
 				       .meshes = s->meshes,
 				       .motions = &s->motion,
 				       .touches = &s->touch,
 				       .tracks = s->tracks,
 				       .numbers = s->numbers,
 				       .layers = s->layers,
-				       .titles = s->titles };
+				       .titles = s->titles,
+				       .fog = { .layer = SCENERY_NONE } };
 }
 
 #endif

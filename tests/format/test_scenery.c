@@ -24,12 +24,19 @@ static void comes_back_as_it_went(void **state)
 
 	(void)state;
 	little_scenery_init(&s);
+	s.material = (struct scenery_material){ true, true, 0.5f, { 0, 7 }, { 0, 0, 9 }, 40 };
+	s.scenery.fog = (struct scenery_fog){ 30, true, { 11 }, 1 };
 	bytes = encoded(&s.scenery);
 	CHECK(scenery_decode(&back, buffer_bytes(&bytes)) == 0);
 	CHECK(back.node_count == 3 && back.nodes[1].parent == 0 && back.nodes[2].layer == 1);
 	CHECK(memcmp(back.nodes, s.nodes, sizeof(s.nodes)) == 0);
-	CHECK(back.mesh_count == 2 && back.meshes[0].has_two_sides &&
+	CHECK(back.mesh_count == 2 && back.materials[0].has_two_sides &&
 	      scenery_triangles(&back) == 4);
+	CHECK(back.material_count == 1 && back.materials[0].by_pixel &&
+	      back.materials[0].opacity == 0.5f && back.materials[0].emissive[1] == 7 &&
+	      back.materials[0].specular[2] == 9 && back.materials[0].shininess == 40);
+	CHECK(back.fog.range_m == 30 && back.fog.is_exponential && back.fog.rgb[0] == 11 &&
+	      back.fog.layer == 1);
 	CHECK(memcmp(back.meshes[1].vertices, s.vertices[1], sizeof(s.vertices[1])) == 0);
 	CHECK(memcmp(back.meshes[1].triangles, s.triangles[1], sizeof(s.triangles[1])) == 0);
 	CHECK(back.touches[0].node == 0 && back.motions[0].returns &&
@@ -104,6 +111,20 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	CHECK(!is_written(&s));
 	s.meshes[1].node = 3;
 	CHECK(!is_written(&s));
+	s.meshes[1].material = 1;
+	CHECK(!is_written(&s));
+	s.material.opacity = 0; /* nobody can see it */
+	CHECK(!is_written(&s));
+	s.material.opacity = NAN;
+	CHECK(!is_written(&s));
+	s.material.specular[1] = 1; /* and no shininess */
+	CHECK(!is_written(&s));
+	s.material.shininess = 129;
+	CHECK(!is_written(&s));
+	s.scenery.fog = (struct scenery_fog){ .range_m = 9, .layer = 2 }; /* no such layer */
+	CHECK(!is_written(&s));
+	s.scenery.fog.range_m = INFINITY;
+	CHECK(!is_written(&s));
 	s.triangles[0][1][2] = 4;
 	CHECK(!is_written(&s));
 	s.motion.duration_s = 0;
@@ -132,10 +153,30 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	CHECK(!is_written(&s));
 }
 
+/* The door of the fuzzer's corpus was written by the first version. */
+static void reads_what_was_published_before_there_were_materials(void **state)
+{
+	struct scenery back;
+	struct buffer file;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(buffer_read_file(&file, "tests/fuzz/corpus/scenery/door") == 0);
+	CHECK(file.data[4] == 1 && scenery_decode(&back, buffer_bytes(&file)) == 0);
+	CHECK(back.material_count == 2 && back.mesh_count == 2);
+	for (uint32_t i = 0; i < 2; i++)
+		CHECK(back.materials[i].has_two_sides == (i == 1) &&
+		      back.materials[i].opacity == 1 && !back.materials[i].by_pixel);
+	CHECK(back.meshes[0].material == 1 && back.fog.range_m == 0);
+	scenery_finish(&back);
+	buffer_finish(&file);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(comes_back_as_it_went),
+		cmocka_unit_test(reads_what_was_published_before_there_were_materials),
 		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
 		cmocka_unit_test(what_breaks_a_rule_is_not_written),
 	};

@@ -26,15 +26,17 @@ static void decode(const uint8_t *data, size_t size)
 	scenery_finish(&back);
 }
 
-/* 'R', and what the frame holds. */
+/* 'R', and what the frame holds; the first byte chooses between the versions. */
 static void pack_and_decode(const uint8_t *data, size_t size)
 {
 	struct buffer object;
 	struct reader in;
 
-	reader_init(&in, (struct bytes){ data + 1, size - 1 });
+	if (size < 2)
+		return;
+	reader_init(&in, (struct bytes){ data + 2, size - 2 });
 	buffer_init(&object, REPACK_BYTES_MAX);
-	buffer_put(&object, "GPsy\1", 5);
+	buffer_put(&object, data[1] & 1 ? "GPsy\1" : "GPsy\2", 5);
 	buffer_put_u32(&object, (uint32_t)reader_left(&in));
 	repack_put(&object, &in, reader_left(&in));
 	decode(object.data, object.size);

@@ -110,6 +110,55 @@ static void what_becomes_transparent_is_a_node(void **state)
 	scenery_finish(&s);
 }
 
+/* The first box is a window, the second shines, the third is not seen. */
+static void a_material_is_kept_with_its_highlight_and_transparency(void **state)
+{
+	static const char boxes[] = HEAD
+		"Shape { geometry Box {} appearance Appearance { material Material {\n"
+		"  transparency 0.75 specularColor 1 0 0 shininess 0.5 } } }\n"
+		"Shape { geometry Box {} appearance DEF L Appearance { material Material {\n"
+		"  diffuseColor 0 0 1 emissiveColor 0 1 0 } } }\n"
+		"Shape { geometry Box {} appearance Appearance { material Material {\n"
+		"  transparency 1 } } }\n"
+		"Shape { geometry Box {} appearance USE L }\n"
+		"Shape { appearance USE L geometry IndexedFaceSet { solid FALSE\n"
+		"  coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] } coordIndex [ 0 1 2 ] } }";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const struct scenery_material *m;
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, boxes, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.material_count == 3 && s.mesh_count == 3 && scenery_triangles(&s) == 37);
+	m = s.materials;
+	CHECK(m[0].opacity == 0.25f && m[0].specular[0] == 255 && m[0].specular[1] == 0 &&
+	      m[0].shininess == 64 && m[0].by_pixel && !m[0].has_two_sides);
+	CHECK(m[1].opacity == 1 && m[1].emissive[1] == 255 && !m[1].by_pixel &&
+	      m[1].shininess == 0);
+	CHECK(m[2].has_two_sides && m[2].emissive[1] == 255);
+	CHECK(s.meshes[1].vertices[0].rgb[2] == 255 && s.meshes[1].vertices[0].rgb[1] == 0);
+	scenery_finish(&s);
+}
+
+static void the_first_fog_is_kept_in_metres(void **state)
+{
+	static const char foggy[] =
+		HEAD "Fog { visibilityRange 0 color 1 0 0 }\n"
+		     "Fog { visibilityRange 40 color 0 0 1 fogType \"EXPONENTIAL\" }\n"
+		     "Shape { geometry Box {} }\n"
+		     "Fog { visibilityRange 9 }";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, foggy, &diagnostics, &warnings) == 0 && warnings.count == 1);
+	CHECK(strcmp(diagnostics_cause(&warnings, 0),
+		     "a.wrl:5: there is a Fog already; this one was left out") == 0);
+	CHECK(s.fog.range_m == 40 && s.fog.is_exponential && s.fog.rgb[2] == 255 &&
+	      s.fog.rgb[0] == 0 && s.fog.layer == SCENERY_NONE);
+	scenery_finish(&s);
+}
+
 static void what_is_not_kept_is_named_with_its_line(void **state)
 {
 	static const struct {
@@ -167,6 +216,8 @@ int main(void)
 		cmocka_unit_test(a_door_turns_on_its_hinge_when_it_is_touched),
 		cmocka_unit_test(a_node_that_is_used_twice_moves_twice),
 		cmocka_unit_test(what_becomes_transparent_is_a_node),
+		cmocka_unit_test(a_material_is_kept_with_its_highlight_and_transparency),
+		cmocka_unit_test(the_first_fog_is_kept_in_metres),
 		cmocka_unit_test(what_is_not_kept_is_named_with_its_line),
 		cmocka_unit_test(an_interpolator_without_sense_is_refused),
 	};

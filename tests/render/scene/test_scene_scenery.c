@@ -6,6 +6,7 @@
 
 #include "format/picture.h"
 #include "format/scenery_code.h"
+#include "geometry/appearance.h"
 #include "geometry/vec.h"
 #include "geometry/view.h"
 #include "render/display/gl.h"
@@ -233,6 +234,56 @@ static void a_section_cuts_it_too(void **state)
 	CHECK(is_wood(1.5f, -6, 1.5f));
 }
 
+/* Makes a picture that came to rest begin again. */
+static void draw_again(void)
+{
+	struct scene_tools tools = { .rake = { .on = true } };
+
+	scene_use(stage.scene, &tools);
+	settle("again");
+	tools.rake.on = false;
+	scene_use(stage.scene, &tools);
+}
+
+/* Of the scan, its images and the door alike. */
+static void fog_hides_by_distance(void **state)
+{
+	static uint8_t clear[4 * PIXELS];
+	struct scenery_fog *fog;
+	int seen = 0;
+
+	(void)state;
+	settle("clear");
+	memcpy(clear, stage.seen, sizeof(clear));
+	fog = &stage.scene->scenery.content.fog;
+	*fog = (struct scenery_fog){ .range_m = 40,
+				     .rgb = { 250, 40, 250 },
+				     .layer = SCENERY_NONE };
+	draw_again();
+	settle("fog");
+	for (int i = 0; i < PIXELS; i += 7) {
+		const float x = (float)(i % WIDTH) + 0.5f, y = (float)(i / WIDTH) + 0.5f;
+		float point[3], share;
+
+		/* the sky has none */
+		share = scene_pick(stage.scene, &eye, x, y, point)
+				? appearance_fog(vec_distance(point, eye.eye_m), fog->range_m,
+						 false)
+				: 0;
+		for (int k = 0; k < 3; k++)
+			seen += fabsf((float)clear[4 * i + k] * (1 - share) +
+				      (float)fog->rgb[k] * share - (float)stage.seen[4 * i + k]) <
+				6;
+	}
+	print_message("%d channels of %d as computed\n", seen, 3 * PIXELS / 7);
+	/* outlines are blended, and not picked so */
+	CHECK(seen > 3 * PIXELS / 7 * 9 / 10);
+	fog->layer = 1; /* which is not shown */
+	draw_again();
+	settle("no-fog");
+	CHECK(differing(clear) < PIXELS / 400);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -241,6 +292,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_pillar_in_front_hides_the_second_layer,
 						raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_section_cuts_it_too, raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(fog_hides_by_distance, raise_stage, strike_stage),
 	};
 	int failed;
 

@@ -1,0 +1,227 @@
+/* Scenery drawn pixel by pixel in software: each pixel's ray meets the triangles, and
+ * geometry/appearance.c colours what it meets. It is the truth that the GLES2 programs are compared
+ * with; slow and plain on purpose. */
+#ifndef GOPURA_TESTS_RENDER_SCENERY_SOFTWARE_SCENERY_H
+#define GOPURA_TESTS_RENDER_SCENERY_SOFTWARE_SCENERY_H
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "format/normal.h"
+#include "format/root_page.h"
+#include "geometry/appearance.h"
+#include "geometry/vec.h"
+#include "geometry/view.h"
+#include "render/scenery/pose.h"
+#include "tests/check.h"
+
+enum { SOFTWARE_HITS_MAX = 64 };
+
+/* A triangle in metres from the eye. */
+struct software_triangle {
+	const struct scenery_material *material;
+	float corners[3][3], normals[3][3], colours[3][3];
+};
+
+struct software_hit {
+	const struct software_triangle *of;
+	float distance, share[3]; /* of each corner */
+	bool is_back;
+};
+
+struct software_picture {
+	const struct scenery *scenery; /* borrowed, as the next two */
+	const struct view *view;
+	const struct root_page *root;
+	struct appearance_sun sun;
+	struct software_triangle *triangles; /* owned */
+	uint32_t count;
+};
+
+static inline void software_place(float out[3], const float m[16], const float at[3], bool is_point)
+{
+	for (int row = 0; row < 3; row++)
+		out[row] = m[row] * at[0] + m[4 + row] * at[1] + m[8 + row] * at[2] +
+			   (is_point ? m[12 + row] : 0);
+}
+
+/* By the cofactors, for any scale. */
+static inline void software_turn(float out[3], const float m[16], const float normal[3])
+{
+	float turned[16] = { 0 };
+
+	vec_cross(&turned[0], &m[4], &m[8]);
+	vec_cross(&turned[4], &m[8], &m[0]);
+	vec_cross(&turned[8], &m[0], &m[4]);
+	software_place(out, turned, normal, false);
+	vec_normalise(out);
+}
+
+static inline void software_add(struct software_picture *p, const struct pose *pose,
+				const struct scenery_mesh *mesh, uint32_t triangle)
+{
+	struct software_triangle *out = &p->triangles[p->count++];
+	const float *m = pose->nodes[mesh->node].matrix;
+
+	out->material = &p->scenery->materials[mesh->material];
+	for (int k = 0; k < 3; k++) {
+		const struct scenery_vertex *v = &mesh->vertices[mesh->triangles[triangle][k]];
+		float at[3], normal[3], n[3], to_eye[3], surface[3];
+
+		for (int i = 0; i < 3; i++) {
+			at[i] = mesh->origin_m[i] + mesh->step_m * v->place[i];
+			surface[i] = (float)v->rgb[i] / 255;
+		}
+		software_place(out->corners[k], m, at, true);
+		vec_sub(out->corners[k], out->corners[k], p->view->eye_m);
+		normal_decode(normal, v->normal);
+		software_turn(out->normals[k], m, normal);
+		vec_copy(out->colours[k], surface);
+		if (out->material->by_pixel)
+			continue;
+		vec_scale(to_eye, -1, out->corners[k]);
+		vec_normalise(to_eye);
+		vec_copy(n, out->normals[k]);
+		if (out->material->has_two_sides && vec_dot(n, to_eye) < 0)
+			vec_scale(n, -1, n);
+		appearance_colour(out->colours[k], out->material, surface, n, to_eye, &p->sun);
+	}
+}
+
+/* Everything is borrowed for the lifetime; ends with software_finish. */
+static inline void software_init(struct software_picture *p, const struct pose *pose,
+				 const struct view *view, const struct root_page *root)
+{
+	const struct scenery *scenery = pose->scenery;
+
+	*p = (struct software_picture){ .scenery = scenery, .view = view, .root = root };
+	vec_copy(p->sun.towards, root->sun);
+	p->sun.is_lit = root->lit;
+	p->triangles = calloc(scenery_triangles(scenery), sizeof(*p->triangles));
+	CHECK(p->triangles);
+	for (uint32_t i = 0; i < scenery->mesh_count; i++)
+		for (uint32_t t = 0; t < scenery->meshes[i].triangle_count; t++)
+			software_add(p, pose, &scenery->meshes[i], t);
+}
+
+static inline void software_finish(struct software_picture *p)
+{
+	free(p->triangles);
+}
+
+/* The test of Moeller and Trumbore 1997. */
+static inline bool software_meets(struct software_hit *out, const struct software_triangle *t,
+				  const float direction[3])
+{
+	float ab[3], ac[3], p[3], q[3], to[3], det, u, v;
+
+	vec_sub(ab, t->corners[1], t->corners[0]);
+	vec_sub(ac, t->corners[2], t->corners[0]);
+	vec_cross(p, direction, ac);
+	det = vec_dot(ab, p);
+	if (fabsf(det) < 1e-12f || (det < 0 && !t->material->has_two_sides))
+		return false;
+	vec_scale(to, -1, t->corners[0]);
+	u = vec_dot(to, p) / det;
+	vec_cross(q, to, ab);
+	v = vec_dot(direction, q) / det;
+	*out = (struct software_hit){ .of = t,
+				      .distance = vec_dot(ac, q) / det,
+				      .share = { 1 - u - v, u, v },
+				      .is_back = det < 0 };
+	return u >= 0 && v >= 0 && u + v <= 1 && out->distance > 0;
+}
+
+static inline void software_mix(float out[3], const float of[3][3], const float share[3])
+{
+	for (int k = 0; k < 3; k++)
+		out[k] = of[0][k] * share[0] + of[1][k] * share[1] + of[2][k] * share[2];
+}
+
+static inline void software_shade(float rgb[3], const struct software_picture *p,
+				  const struct software_hit *hit, const float direction[3])
+{
+	const struct software_triangle *t = hit->of;
+	const struct scenery_fog *fog = &p->scenery->fog;
+	float surface[3], normal[3], to_eye[3], colour[3];
+
+	software_mix(surface, t->colours, hit->share);
+	vec_copy(rgb, surface);
+	if (t->material->by_pixel) {
+		software_mix(normal, t->normals, hit->share);
+		vec_scale(normal, hit->is_back ? -1 : 1, normal);
+		vec_normalise(normal);
+		vec_scale(to_eye, -1, direction);
+		appearance_colour(rgb, t->material, surface, normal, to_eye, &p->sun);
+	}
+	if (!(fog->range_m > 0))
+		return;
+	for (int k = 0; k < 3; k++)
+		colour[k] = (float)fog->rgb[k] / 255;
+	vec_mix(rgb, rgb, colour, appearance_fog(hit->distance, fog->range_m, fog->is_exponential));
+}
+
+static inline int software_from_far(const void *left, const void *right)
+{
+	const struct software_hit *a = left, *b = right;
+
+	return (a->distance < b->distance) - (a->distance > b->distance);
+}
+
+/* Sets the colour that a ray sees: what is solid, and what is transparent over it, from far to
+ * near. */
+static inline void software_ray(float rgb[3], const struct software_picture *p,
+				const float direction[3])
+{
+	struct software_hit clear[SOFTWARE_HITS_MAX], hit, solid = { .distance = INFINITY };
+	int count = 0;
+
+	for (uint32_t i = 0; i < p->count; i++) {
+		if (!software_meets(&hit, &p->triangles[i], direction))
+			continue;
+		if (hit.of->material->opacity < 1) {
+			CHECK(count < SOFTWARE_HITS_MAX);
+			clear[count++] = hit;
+		} else if (hit.distance < solid.distance) {
+			solid = hit;
+		}
+	}
+	for (int k = 0; k < 3; k++)
+		rgb[k] = (float)p->root->background[k] / 255;
+	if (solid.of)
+		software_shade(rgb, p, &solid, direction);
+	qsort(clear, (size_t)count, sizeof(*clear), software_from_far);
+	for (int i = 0; i < count; i++) {
+		float over[3];
+
+		if (clear[i].distance >= solid.distance)
+			continue;
+		software_shade(over, p, &clear[i], direction);
+		vec_mix(rgb, rgb, over, clear[i].of->material->opacity);
+	}
+}
+
+/* rgba: 4 bytes a pixel, row 0 on top. */
+static inline void software_draw(const struct software_picture *p, uint8_t *rgba)
+{
+	const struct view *view = p->view;
+
+	for (int i = 0; i < view->width_px * view->height_px; i++) {
+		const float x =
+			((float)(i % view->width_px) + 0.5f) * 2 / (float)view->width_px - 1;
+		const float y =
+			1 - ((float)(i / view->width_px) + 0.5f) * 2 / (float)view->height_px;
+		float direction[3], rgb[3];
+
+		vec_copy(direction, view->forward);
+		vec_add_scaled(direction, direction, x * view->tan_x, view->right);
+		vec_add_scaled(direction, direction, y * view->tan_y, view->up);
+		vec_normalise(direction);
+		software_ray(rgb, p, direction);
+		for (int k = 0; k < 3; k++)
+			rgba[4 * i + k] = (uint8_t)lrintf(rgb[k] * 255);
+		rgba[4 * i + 3] = 255;
+	}
+}
+
+#endif
