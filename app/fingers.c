@@ -46,6 +46,8 @@ static void on_tap(struct fingers *fingers, const struct gesture *gesture)
 		overlay_picture_double_tap(overlay, gesture->x_px, gesture->y_px);
 	else if (action.kind != OVERLAY_NONE)
 		actions_carry_out(actions, &action);
+	else if (tools_take_tap(fingers->env.tools, gesture->x_px, gesture->y_px))
+		return;
 	else if (gesture->kind == GESTURE_TAP)
 		actions_show_part_at(actions, gesture->x_px, gesture->y_px);
 	else

@@ -232,8 +232,8 @@ static void connect_visit(struct kiosk *kiosk)
 	const struct exhibit *shown = &kiosk->releases.sessions.shown.exhibit;
 
 	eye_init(&kiosk->eye, shown);
-	tools_init(&kiosk->tools,
-		   &(struct tools_env){ shown, &kiosk->eye, &kiosk->anchors, &kiosk->redraw });
+	tools_init(&kiosk->tools, &(struct tools_env){ shown, &kiosk->eye, &kiosk->viewport,
+						       &kiosk->anchors, &kiosk->redraw });
 	tour_player_init(
 		&kiosk->tours,
 		&(struct tour_player_env){ shown, &kiosk->eye, &kiosk->counting, &kiosk->redraw });

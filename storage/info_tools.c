@@ -3,12 +3,13 @@
  * for them. */
 #include "storage/info_tools.h"
 
+#include <errno.h>
 #include <string.h>
 
 #include "storage/info_rows.h"
 #include "storage/info_schema.h"
 
-const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section" };
+const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section", "measure" };
 
 unsigned info_tool_named(const char *name, size_t length)
 {
@@ -34,6 +35,13 @@ static int read_tool(struct info *info, sqlite3_stmt *row)
 	return 0;
 }
 
+static int read_error(struct info *info, sqlite3_stmt *row)
+{
+	int rc = info_read_floats(row, 0, &info->scan_error_m, 1);
+
+	return rc == 0 && info->scan_error_m < 0 ? -EBADMSG : rc;
+}
+
 int info_load_tools(struct info *info)
 {
 	int rc = info_each_row(info,
@@ -42,10 +50,18 @@ int info_load_tools(struct info *info)
 
 	if (rc == 0 && info->has_tools)
 		rc = info_each_row(info, "SELECT name FROM tool", read_tool);
+	if (rc == 0 && info->tools & INFO_TOOL_MEASURE)
+		rc = info_each_row(info, "SELECT error_m FROM tool WHERE name = 'measure'",
+				   read_error);
 	return rc;
 }
 
 unsigned info_tools(const struct info *info)
 {
 	return info->tools;
+}
+
+float info_scan_error_m(const struct info *info)
+{
+	return info->scan_error_m;
 }

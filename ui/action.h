@@ -22,6 +22,7 @@ enum overlay_action_kind {
 	OVERLAY_REACH,      /* toggle reach mode */
 	OVERLAY_LIGHT,      /* toggle this tool */
 	OVERLAY_SECTION,    /* toggle this tool */
+	OVERLAY_MEASURE,    /* toggle this tool */
 	OVERLAY_CHOICE,     /* choice: this state of the site was chosen */
 	OVERLAY_KEY,        /* key: for overlay_press */
 	OVERLAY_FOUND,      /* part: a search result was tapped */
@@ -51,6 +52,8 @@ enum overlay_handle {
 	OVERLAY_HANDLE_LIGHT,
 	OVERLAY_HANDLE_PUSH,
 	OVERLAY_HANDLE_TURN,
+	OVERLAY_HANDLE_FROM, /* one end of what is measured */
+	OVERLAY_HANDLE_TO,   /* the other */
 };
 
 #endif

@@ -195,6 +195,17 @@ static void draw_tour(cairo_t *c)
 	dot(c, -0.75, 0.7, 0.26);
 }
 
+/* A ruler that lies aslant. */
+static void draw_measure(cairo_t *c)
+{
+	cairo_save(c);
+	cairo_rotate(c, -0.7854);
+	cairo_rectangle(c, -1.05, -0.4, 2.1, 0.8);
+	for (int i = -2; i <= 2; i++)
+		line(c, 0.36 * i, -0.4, 0.36 * i, i % 2 ? -0.1 : 0.05);
+	cairo_restore(c);
+}
+
 static void draw_push(cairo_t *c)
 {
 	line(c, 0, -0.95, 0, 0.95);
@@ -262,18 +273,19 @@ static void draw_backspace(cairo_t *c)
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
 {
 	static void (*const drawings[])(cairo_t *) = {
-		[ICON_CLOSE] = draw_close,     [ICON_FORWARD] = draw_forward,
-		[ICON_BACK] = draw_back,       [ICON_HOME] = draw_home,
-		[ICON_HELP] = draw_help,       [ICON_TURN] = draw_turn,
-		[ICON_ZOOM] = draw_zoom,       [ICON_TAP] = draw_tap,
-		[ICON_SEARCH] = draw_search,   [ICON_SPACE] = draw_space,
-		[ICON_LARGE] = draw_large,     [ICON_REACH] = draw_seated,
-		[ICON_TOUR] = draw_tour,       [ICON_LIGHT] = draw_light,
-		[ICON_SECTION] = draw_section, [ICON_PUSH] = draw_push,
-		[ICON_WIDEN] = draw_widen,     [ICON_NARROW] = draw_narrow,
-		[ICON_LANGUAGES] = draw_globe, [ICON_RETURN] = draw_return,
-		[ICON_PAUSE] = draw_pause,     [ICON_BACKSPACE] = draw_backspace,
-		[ICON_LISTEN] = draw_listen,   [ICON_STOP] = draw_stop,
+		[ICON_CLOSE] = draw_close,         [ICON_FORWARD] = draw_forward,
+		[ICON_BACK] = draw_back,           [ICON_HOME] = draw_home,
+		[ICON_HELP] = draw_help,           [ICON_TURN] = draw_turn,
+		[ICON_ZOOM] = draw_zoom,           [ICON_TAP] = draw_tap,
+		[ICON_SEARCH] = draw_search,       [ICON_SPACE] = draw_space,
+		[ICON_LARGE] = draw_large,         [ICON_REACH] = draw_seated,
+		[ICON_TOUR] = draw_tour,           [ICON_LIGHT] = draw_light,
+		[ICON_SECTION] = draw_section,     [ICON_PUSH] = draw_push,
+		[ICON_MEASURE] = draw_measure,     [ICON_WIDEN] = draw_widen,
+		[ICON_NARROW] = draw_narrow,       [ICON_LANGUAGES] = draw_globe,
+		[ICON_RETURN] = draw_return,       [ICON_PAUSE] = draw_pause,
+		[ICON_BACKSPACE] = draw_backspace, [ICON_LISTEN] = draw_listen,
+		[ICON_STOP] = draw_stop,
 	};
 
 	cairo_save(context);

@@ -25,6 +25,7 @@ enum icon {
 	ICON_STOP,
 	ICON_LIGHT,   /* a lamp low beside a relief */
 	ICON_SECTION, /* a solid that is cut */
+	ICON_MEASURE, /* a ruler */
 	ICON_PUSH,    /* two arrows, to and fro */
 	ICON_WIDEN,   /* arrows out into the corners */
 	ICON_NARROW,

@@ -28,6 +28,7 @@ static void lay_out_bar(struct overlay *overlay)
 		.tours = overlay->tours.count > 0,
 		.light = overlay->tools.offered & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.offered & OVERLAY_TOOL_SECTION,
+		.measure = overlay->tools.offered & OVERLAY_TOOL_MEASURE,
 		.reach = screen_offers_reach(&screen),
 	};
 
@@ -54,6 +55,7 @@ static void start_views(struct overlay *overlay)
 	help_view_init(&overlay->help, theme, &next_id);
 	invitation_view_init(&overlay->invitation, &next_id);
 	languages_view_init(&overlay->languages_view, &next_id);
+	measure_view_init(&overlay->measure, &next_id);
 	page_view_init(&overlay->page, theme, overlay->height_px, &next_id);
 	question_view_init(&overlay->question, &next_id);
 	search_view_init(&overlay->search, &next_id);
@@ -122,6 +124,7 @@ void overlay_destroy(struct overlay *overlay)
 	help_view_finish(&overlay->help);
 	invitation_view_finish(&overlay->invitation);
 	languages_view_finish(&overlay->languages_view);
+	measure_view_finish(&overlay->measure);
 	page_view_finish(&overlay->page);
 	question_view_finish(&overlay->question);
 	search_view_finish(&overlay->search);
@@ -180,6 +183,7 @@ static void redraw_words(struct overlay *overlay)
 	overlay->help.dirty = overlay->card.dirty = overlay->page.head_dirty = true;
 	overlay->tour.dirty = overlay->tours.dirty = overlay->tools.dirty = true;
 	overlay->languages_view.dirty = overlay->question.dirty = overlay->choice.dirty = true;
+	overlay->measure.dirty = true;
 }
 
 void overlay_language(struct overlay *overlay, const char *language)
@@ -471,6 +475,9 @@ void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *sta
 	const unsigned changed = overlay->tools.now.on ^ state->on;
 
 	overlay->tools.now = *state;
+	measure_view_set(&overlay->measure, overlay->tools.fit && state->on & OVERLAY_TOOL_MEASURE
+						    ? &state->measure
+						    : NULL);
 	if (!changed)
 		return;
 	overlay->tools.dirty = overlay->callouts.dirty = true;
@@ -607,12 +614,16 @@ enum overlay_handle overlay_handle_at(const struct overlay *overlay, float x_px,
 {
 	const struct screen screen = overlay_screen(overlay);
 	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, &screen);
+	enum overlay_handle handle;
 
 	if (overlay->question.fade.on ||
 	    (overlay->languages_view.fade.on &&
 	     rect_holds(languages_view_rect(&screen, &overlay->languages), x_px, y_px)))
 		return OVERLAY_HANDLE_NONE;
-	return tools_view_handle_at(&overlay->tools, &screen, &obstacles, x_px, y_px);
+	handle = tools_view_handle_at(&overlay->tools, &screen, &obstacles, x_px, y_px);
+	if (handle != OVERLAY_HANDLE_NONE || overlay_covers(overlay, x_px, y_px))
+		return handle;
+	return measure_view_handle_at(&overlay->measure, &screen, x_px, y_px);
 }
 
 void overlay_handle_place(const struct overlay *overlay, enum overlay_handle handle, float x_px,
@@ -686,6 +697,7 @@ static void update_bar(struct overlay *overlay, const struct screen *screen)
 		.reach = overlay->comfort.reach,
 		.light = overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.now.on & OVERLAY_TOOL_SECTION,
+		.measure = overlay->tools.now.on & OVERLAY_TOOL_MEASURE,
 		.languages = overlay->languages_view.fade.on,
 	};
 
@@ -714,6 +726,17 @@ static bool update_choice(struct overlay *overlay, const struct screen *screen, 
 	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
 
 	return choice_view_update(&overlay->choice, screen, &obstacles, step_ms);
+}
+
+static bool update_measure(struct overlay *overlay, const struct screen *screen, int64_t step_ms)
+{
+	const struct tools_view_obstacles obstacles = overlay_obstacles(overlay, screen);
+
+	return measure_view_update(&overlay->measure, screen, !obstacles.all,
+				   choice_view_shows(&overlay->choice, screen, &obstacles)
+					   ? choice_view_rect(&overlay->choice, screen)
+					   : (struct rect){ 0 },
+				   step_ms);
 }
 
 /* Callouts come after all that they must not touch. */
@@ -759,6 +782,7 @@ bool overlay_update(struct overlay *overlay, int64_t now_ms)
 					step_ms);
 	moving |= update_tools(overlay, &screen, step_ms);
 	moving |= update_choice(overlay, &screen, step_ms);
+	moving |= update_measure(overlay, &screen, step_ms);
 	moving |= update_callouts(overlay, &screen, step_ms);
 	moving |= search_view_update(&overlay->search, &screen, parts, pictures, step_ms);
 	moving |= update_page(overlay, &screen, step_ms);
@@ -771,6 +795,7 @@ uint32_t overlay_layers(const struct overlay *overlay, struct overlay_layer *lis
 	struct layers layers = { .list = list, .most = most };
 
 	callouts_view_layers(&overlay->callouts, &layers);
+	measure_view_layers(&overlay->measure, &screen, &layers);
 	tools_view_layers(&overlay->tools, &screen, &layers);
 	choice_view_layers(&overlay->choice, &layers);
 	help_view_layers(&overlay->help, &screen, overlay->parts.count > 0, &layers);

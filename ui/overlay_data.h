@@ -8,7 +8,7 @@ enum {
 	OVERLAY_PARTS_MAX = 1000,
 	OVERLAY_LANGUAGES_MAX = 64,
 	OVERLAY_TOURS_MAX = 8,
-	OVERLAY_TOOL_COUNT = 2,
+	OVERLAY_DISC_COUNT = 2, /* tools with a disc, the first ones */
 	OVERLAY_CHOICES_MAX = 8,
 	OVERLAY_CHOICE_BYTES = 128, /* of a title, with its end */
 };
@@ -46,7 +46,19 @@ struct overlay_spoken {
 };
 
 /* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
-enum overlay_tool { OVERLAY_TOOL_LIGHT = 1, OVERLAY_TOOL_SECTION = 2 };
+enum overlay_tool {
+	OVERLAY_TOOL_LIGHT = 1,
+	OVERLAY_TOOL_SECTION = 2,
+	OVERLAY_TOOL_MEASURE = 4,
+};
+
+/* What is measured from point to point. */
+struct overlay_measure {
+	unsigned count;   /* of ends that are set: 0 to 2 */
+	bool in_sight[2]; /* whether each end is in front of the camera and in the scene */
+	float at_px[2][2];
+	float length_m, error_m; /* with two ends */
+};
 
 /* State of the tools. Directions are relative to the disc of the tool: the ring has radius 1, up
  * points away from the viewer. */
@@ -56,6 +68,7 @@ struct overlay_tools {
 	float light_at[2]; /* right, up */
 	float turn_rad;    /* direction of the part cut away, from up to the left */
 	float push;        /* offset of the cut in that direction; 1 and -1 at the ring */
+	struct overlay_measure measure;
 };
 
 /* Settings of one visitor; they are reset for the next one. */

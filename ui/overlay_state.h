@@ -10,6 +10,7 @@
 #include "ui/help_view.h"
 #include "ui/invitation_view.h"
 #include "ui/languages_view.h"
+#include "ui/measure_view.h"
 #include "ui/overlay_data.h"
 #include "ui/page_view.h"
 #include "ui/paper.h"
@@ -38,6 +39,7 @@ struct overlay {
 	struct help_view help;
 	struct invitation_view invitation;
 	struct languages_view languages_view;
+	struct measure_view measure;
 	struct page_view page;
 	struct question_view question;
 	struct search_view search;

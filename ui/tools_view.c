@@ -11,12 +11,12 @@
 #define HEAD_MM    7.0f /* the line with the tool's name */
 #define LINE_MM    0.9f
 
-static const unsigned tool_bits[OVERLAY_TOOL_COUNT] = { OVERLAY_TOOL_LIGHT, OVERLAY_TOOL_SECTION };
+static const unsigned tool_bits[OVERLAY_DISC_COUNT] = { OVERLAY_TOOL_LIGHT, OVERLAY_TOOL_SECTION };
 
 void tools_view_init(struct tools_view *view, uint32_t *next_id)
 {
 	*view = (struct tools_view){ .fit = true };
-	sprites_init(view->discs, OVERLAY_TOOL_COUNT, next_id);
+	sprites_init(view->discs, OVERLAY_DISC_COUNT, next_id);
 	sprites_init(&view->knob, 1, next_id);
 	sprites_init(&view->push_knob, 1, next_id);
 	sprites_init(&view->line, 1, next_id);
@@ -24,7 +24,7 @@ void tools_view_init(struct tools_view *view, uint32_t *next_id)
 
 void tools_view_finish(struct tools_view *view)
 {
-	sprites_finish(view->discs, OVERLAY_TOOL_COUNT);
+	sprites_finish(view->discs, OVERLAY_DISC_COUNT);
 	sprites_finish(&view->knob, 1);
 	sprites_finish(&view->push_knob, 1);
 	sprites_finish(&view->line, 1);
@@ -44,7 +44,8 @@ static int disc_px(const struct tools_view *view, const struct screen *screen)
 	const int gap = screen_px(screen, THEME_GAP_MM), padding = screen_px(screen, PADDING_MM);
 	const int reach = screen_reach_top(screen), top = reach > scene.y_px ? reach : scene.y_px;
 	const int high = screen_floor(screen) - top - gap - head_px(screen) - padding;
-	const int count = view->offered == (OVERLAY_TOOL_LIGHT | OVERLAY_TOOL_SECTION) ? 2 : 1;
+	const unsigned both = OVERLAY_TOOL_LIGHT | OVERLAY_TOOL_SECTION;
+	const int count = (view->offered & both) == both ? 2 : 1;
 	const int wide = (scene.width_px - (count + 1) * gap) / count - 2 * padding;
 	int side = screen_px(screen, DISC_MM);
 
@@ -84,7 +85,7 @@ int tools_view_top(const struct tools_view *view, const struct screen *screen,
 {
 	int top = screen->height_px;
 
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++)
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++)
 		if (tools_view_shows(view, screen, obstacles, tool))
 			top = tools_view_rect(view, screen, tool).y_px;
 	return top;
@@ -95,7 +96,7 @@ int tools_view_left(const struct tools_view *view, const struct screen *screen,
 {
 	int left = screen->width_px;
 
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++)
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++)
 		if (tools_view_shows(view, screen, obstacles, tool) &&
 		    tools_view_rect(view, screen, tool).x_px < left)
 			left = tools_view_rect(view, screen, tool).x_px;
@@ -140,7 +141,7 @@ void tools_view_knobs(const struct tools_view *view, const struct screen *screen
 bool tools_view_covers(const struct tools_view *view, const struct screen *screen,
 		       const struct tools_view_obstacles *obstacles, float x_px, float y_px)
 {
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++)
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++)
 		if (tools_view_shows(view, screen, obstacles, tool) &&
 		    rect_holds(tools_view_rect(view, screen, tool), x_px, y_px))
 			return true;
@@ -154,7 +155,7 @@ enum overlay_handle tools_view_handle_at(const struct tools_view *view, const st
 	const float knob_px = (float)screen_px(screen, THEME_TARGET_MM);
 	float x, y, radius;
 
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++) {
 		if (!tools_view_shows(view, screen, obstacles, tool))
 			continue;
 		ring_of(view, screen, tool, &x, &y, &radius);
@@ -184,7 +185,7 @@ void tools_view_handle_place(const struct tools_view *view, const struct screen 
 static void draw_disc(struct tools_view *view, const struct screen *screen, int tool)
 {
 	/* Translators: two tools: light from the side, which shows relief, and a cut model. */
-	static const char *const names[OVERLAY_TOOL_COUNT] = { N_("Raking light"),
+	static const char *const names[OVERLAY_DISC_COUNT] = { N_("Raking light"),
 							       N_("Cross-section") };
 	const struct rect rect = tools_view_rect(view, screen, tool);
 	cairo_t *context = sprite_begin(&view->discs[tool], rect.width_px, rect.height_px);
@@ -282,7 +283,7 @@ bool tools_view_update(struct tools_view *view, const struct screen *screen,
 		return false;
 	view->dirty |=
 		rect.width_px != view->drawn_width_px || rect.height_px != view->drawn_height_px;
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++) {
 		const bool shows = tools_view_shows(view, screen, obstacles, tool);
 
 		*moved |= shows != view->fades[tool].on;
@@ -292,7 +293,7 @@ bool tools_view_update(struct tools_view *view, const struct screen *screen,
 	if (view->dirty && view->now.on) {
 		view->drawn_width_px = rect.width_px;
 		view->drawn_height_px = rect.height_px;
-		for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++)
+		for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++)
 			draw_disc(view, screen, tool);
 		draw_knob(&view->knob, screen, theme_night_text, false);
 		draw_knob(&view->push_knob, screen, theme_accent, true);
@@ -307,11 +308,11 @@ void tools_view_layers(const struct tools_view *view, const struct screen *scree
 {
 	const float knob = (float)view->knob.bitmap.width_px / 2;
 	const float upright[2] = { 0, -1 };
-	float alpha[OVERLAY_TOOL_COUNT];
+	float alpha[OVERLAY_DISC_COUNT];
 	struct tools_view_knobs knobs;
 
 	tools_view_knobs(view, screen, &knobs);
-	for (int tool = 0; tool < OVERLAY_TOOL_COUNT; tool++) {
+	for (int tool = 0; tool < OVERLAY_DISC_COUNT; tool++) {
 		const struct rect rect = tools_view_rect(view, screen, tool);
 
 		alpha[tool] = fade_eased(&view->fades[tool]);

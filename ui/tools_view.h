@@ -22,10 +22,10 @@ struct tools_view {
 	unsigned offered; /* by the content; mask of enum overlay_tool */
 	bool fit;         /* the bar has room for their buttons */
 	struct overlay_tools now;
-	struct fade fades[OVERLAY_TOOL_COUNT]; /* on: the disc is visible */
+	struct fade fades[OVERLAY_DISC_COUNT]; /* on: the disc is visible */
 	int drawn_width_px, drawn_height_px;   /* the size for which the discs were drawn */
 	bool dirty;
-	struct sprite discs[OVERLAY_TOOL_COUNT], knob, push_knob, line;
+	struct sprite discs[OVERLAY_DISC_COUNT], knob, push_knob, line;
 };
 
 /* The knobs; centres in pixels of the panel. */

@@ -120,6 +120,20 @@ bool eye_pick(const struct eye *eye, const struct viewport *viewport, float x_px
 	return false;
 }
 
+bool eye_measure(const struct eye *eye, const struct viewport *viewport, float x_px, float y_px,
+		 float point_m[3], float *error_m)
+{
+	const struct camera *camera = &eye->camera;
+	float half_m;
+
+	viewport_to_panel(viewport, &x_px, &y_px);
+	if (!scene_pick_surface(eye->shown->scene, camera, x_px, y_px, point_m, error_m))
+		return false;
+	half_m = 0.5f * vec_distance(camera->eye_m, point_m) / camera_px_per_radian(camera);
+	*error_m = hypotf(*error_m, half_m);
+	return true;
+}
+
 void eye_grab(struct eye *eye, const struct viewport *viewport, float x_px, float y_px)
 {
 	float pivot_m[3];

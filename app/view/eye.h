@@ -40,6 +40,11 @@ void eye_log(const struct eye *eye, const char *when);
  * is the point on the ray at the distance of the model's centre, and the result is false. */
 bool eye_pick(const struct eye *eye, const struct viewport *viewport, float x_px, float y_px,
 	      float point_m[3]);
+/* Finds the surface point under a finger, and by how much it is beside the surface of the scan: by
+ * the detail that is shown (scene_pick_surface) and half a pixel. Returns false where
+ * nothing is. */
+bool eye_measure(const struct eye *eye, const struct viewport *viewport, float x_px, float y_px,
+		 float point_m[3], float *error_m);
 /* Grabs the surface point under a finger, in the visitor's pixels. */
 void eye_grab(struct eye *eye, const struct viewport *viewport, float x_px, float y_px);
 /* Flies to a pose in which the part is in the middle of the area that the overlay leaves free. */

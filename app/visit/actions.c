@@ -252,8 +252,9 @@ static void do_change_comfort(const struct actions *actions, const struct overla
 
 static void do_press_tool(const struct actions *actions, const struct overlay_action *action)
 {
-	tools_press(actions->tools,
-		    action->kind == OVERLAY_LIGHT ? OVERLAY_TOOL_LIGHT : OVERLAY_TOOL_SECTION);
+	tools_press(actions->tools, action->kind == OVERLAY_LIGHT     ? OVERLAY_TOOL_LIGHT
+				    : action->kind == OVERLAY_SECTION ? OVERLAY_TOOL_SECTION
+								      : OVERLAY_TOOL_MEASURE);
 }
 
 static void do_choose_layer(const struct actions *actions, const struct overlay_action *action)
@@ -334,6 +335,7 @@ static const struct {
 	[OVERLAY_REACH] = { do_change_comfort, 0 },
 	[OVERLAY_LIGHT] = { do_press_tool, 0 },
 	[OVERLAY_SECTION] = { do_press_tool, 0 },
+	[OVERLAY_MEASURE] = { do_press_tool, 0 },
 	[OVERLAY_CHOICE] = { do_choose_layer, 0 },
 	[OVERLAY_KEY] = { do_press_key, 0 },
 	[OVERLAY_FOUND] = { do_show_found, STEP | HALTS_TOUR },

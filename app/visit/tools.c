@@ -1,11 +1,12 @@
-/* Handles the visitor's two tools, the raking light and the section: switches them on and off,
- * moves them with a finger on their discs, and passes them to scene and overlay. */
+/* Handles the visitor's tools, the raking light, the section and measuring: switches them on and
+ * off, moves them with a finger, and passes them to scene and overlay. */
 #include "app/visit/tools.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/log.h"
+#include "storage/info_tools.h"
 
 /* The first position of the raking light on its disc: from the upper left, as is usual in drawings,
  * and low. */
@@ -27,6 +28,13 @@ static unsigned offered(const struct tools *tools)
 	return overlay ? overlay_tools_offered(overlay) : 0;
 }
 
+static float scan_error_m(const struct tools *tools)
+{
+	const struct info *info = exhibit_info(tools->env.shown);
+
+	return info ? info_scan_error_m(info) : 0;
+}
+
 static void log_state(const struct tools *tools)
 {
 	const struct rake *rake = &tools->now.rake;
@@ -37,7 +45,13 @@ static void log_state(const struct tools *tools)
 	if (section->on)
 		log_debug("app", "section at %.2f m, turned %.2f", (double)section->push_m,
 			  (double)section->turn_rad);
-	if (!rake->on && !section->on)
+	if (tools->measure.on && tools->measure.count == 2)
+		log_debug("app", "measured %.3f m, off by %.3f m",
+			  (double)measuring_length_m(&tools->measure),
+			  (double)measuring_error_m(&tools->measure, scan_error_m(tools)));
+	else if (tools->measure.on)
+		log_debug("app", "measuring, %u ends", tools->measure.count);
+	if (!tools_are_used(tools))
 		log_debug("app", "no tools");
 }
 
@@ -81,6 +95,8 @@ void tools_press(struct tools *tools, enum overlay_tool tool)
 	if (tool == OVERLAY_TOOL_LIGHT) {
 		now->rake.on = !now->rake.on;
 		rake_place(&now->rake, first_light[0], first_light[1]);
+	} else if (tool == OVERLAY_TOOL_MEASURE) {
+		tools->measure = (struct measuring){ .on = !tools->measure.on };
 	} else if (now->section.on) {
 		now->section.on = false;
 	} else {
@@ -92,7 +108,7 @@ void tools_press(struct tools *tools, enum overlay_tool tool)
 
 bool tools_are_used(const struct tools *tools)
 {
-	return tools->now.rake.on || tools->now.section.on;
+	return tools->now.rake.on || tools->now.section.on || tools->measure.on;
 }
 
 void tools_end(struct tools *tools)
@@ -101,19 +117,51 @@ void tools_end(struct tools *tools)
 	if (!tools_are_used(tools))
 		return;
 	tools->now.rake.on = tools->now.section.on = false;
+	tools->measure = (struct measuring){ 0 };
 	log_state(tools);
 	redraw_ask(tools->env.redraw);
 }
 
 /* ---- fingers */
 
+/* Returns where an end is for the visitor; false: it is out of sight. */
+static bool end_on_panel(const struct tools *tools, int end, float at_px[2])
+{
+	if (!camera_pixel(&tools->env.eye->camera, tools->measure.ends[end].at_m, &at_px[0],
+			  &at_px[1]))
+		return false;
+	viewport_from_panel(tools->env.viewport, &at_px[0], &at_px[1]);
+	return true;
+}
+
+static bool is_end(enum overlay_handle handle)
+{
+	return handle == OVERLAY_HANDLE_FROM || handle == OVERLAY_HANDLE_TO;
+}
+
 static void grab(struct tools *tools, uint32_t contact, enum overlay_handle handle,
 		 const float at[2])
 {
+	float end_px[2];
+
 	tools->held = handle;
 	tools->contact = contact;
 	memcpy(tools->grabbed_at, at, sizeof(tools->grabbed_at));
 	tools->grabbed_push_m = tools->now.section.push_m;
+	if (is_end(handle) && end_on_panel(tools, handle == OVERLAY_HANDLE_TO, end_px)) {
+		tools->grabbed_at[0] -= end_px[0];
+		tools->grabbed_at[1] -= end_px[1];
+	}
+}
+
+static void move_end(struct tools *tools, const float at[2])
+{
+	const int end = tools->held == OVERLAY_HANDLE_TO;
+	struct measured_end found;
+
+	if (eye_measure(tools->env.eye, tools->env.viewport, at[0] - tools->grabbed_at[0],
+			at[1] - tools->grabbed_at[1], found.at_m, &found.error_m))
+		tools->measure.ends[end] = found;
 }
 
 static void move(struct tools *tools, const float at[2])
@@ -138,8 +186,39 @@ static void move(struct tools *tools, const float at[2])
 			     section->reach_m * ((at[1] - tools->grabbed_at[1]) * cosf(turn) -
 						 (at[0] - tools->grabbed_at[0]) * sinf(turn)));
 		break;
+	case OVERLAY_HANDLE_FROM:
+	case OVERLAY_HANDLE_TO:
+		move_end(tools, at);
+		break;
 	}
 	changed(tools);
+}
+
+/* Where a finger is, as its handle counts: on a disc, or on the panel. */
+static void place_finger(const struct tools *tools, enum overlay_handle handle,
+			 const struct touch_event *event, float at[2])
+{
+	if (is_end(handle)) {
+		at[0] = event->x_px;
+		at[1] = event->y_px;
+		return;
+	}
+	overlay_handle_place(exhibit_overlay(tools->env.shown), handle, event->x_px, event->y_px,
+			     at);
+}
+
+bool tools_take_tap(struct tools *tools, float x_px, float y_px)
+{
+	struct measured_end end;
+
+	if (!tools->measure.on)
+		return false;
+	if (eye_measure(tools->env.eye, tools->env.viewport, x_px, y_px, end.at_m, &end.error_m)) {
+		measuring_add(&tools->measure, &end);
+		log_state(tools);
+		redraw_ask(tools->env.redraw);
+	}
+	return true;
 }
 
 bool tools_take_touch(struct tools *tools, const struct touch_event *event)
@@ -156,15 +235,16 @@ bool tools_take_touch(struct tools *tools, const struct touch_event *event)
 		handle = overlay_handle_at(overlay, event->x_px, event->y_px);
 		if (handle == OVERLAY_HANDLE_NONE || tools->held != OVERLAY_HANDLE_NONE)
 			return false;
-		overlay_handle_place(overlay, handle, event->x_px, event->y_px, at);
+		place_finger(tools, handle, event, at);
 		grab(tools, event->contact, handle, at);
-		move(tools, at);
+		if (!is_end(handle))
+			move(tools, at);
 		return true;
 	}
 	if (!is_holder)
 		return false;
 	if (event->phase == TOUCH_MOVE) {
-		overlay_handle_place(overlay, tools->held, event->x_px, event->y_px, at);
+		place_finger(tools, tools->held, event, at);
 		move(tools, at);
 		return true;
 	}
@@ -175,6 +255,26 @@ bool tools_take_touch(struct tools *tools, const struct touch_event *event)
 
 /* ---- a frame */
 
+static struct overlay_measure measure_shown(const struct tools *tools)
+{
+	const struct measuring *measure = &tools->measure;
+	const struct rect scene = overlay_scene_rect(exhibit_overlay(tools->env.shown));
+	struct overlay_measure shown = { .count = measure->count };
+
+	for (unsigned end = 0; end < measure->count; end++) {
+		float *at = shown.at_px[end];
+
+		shown.in_sight[end] = end_on_panel(tools, (int)end, at) &&
+				      section_keeps(&tools->now.section, measure->ends[end].at_m) &&
+				      rect_holds(scene, at[0], at[1]);
+	}
+	if (measure->count == 2) {
+		shown.length_m = measuring_length_m(measure);
+		shown.error_m = measuring_error_m(measure, scan_error_m(tools));
+	}
+	return shown;
+}
+
 void tools_show(struct tools *tools)
 {
 	struct overlay *overlay = exhibit_overlay(tools->env.shown);
@@ -183,6 +283,7 @@ void tools_show(struct tools *tools)
 	/* Another release may offer other tools. */
 	now->rake.on = now->rake.on && offered(tools) & OVERLAY_TOOL_LIGHT;
 	now->section.on = now->section.on && offered(tools) & OVERLAY_TOOL_SECTION;
+	tools->measure.on = tools->measure.on && offered(tools) & OVERLAY_TOOL_MEASURE;
 	if (tools->env.shown->scene)
 		scene_use(tools->env.shown->scene, now);
 	if (overlay)
@@ -190,7 +291,9 @@ void tools_show(struct tools *tools)
 			overlay,
 			&(struct overlay_tools){
 				.on = (now->rake.on ? OVERLAY_TOOL_LIGHT : 0u) |
-				      (now->section.on ? OVERLAY_TOOL_SECTION : 0u),
+				      (now->section.on ? OVERLAY_TOOL_SECTION : 0u) |
+				      (tools->measure.on ? OVERLAY_TOOL_MEASURE : 0u),
+				.measure = measure_shown(tools),
 				.light_at = { now->rake.at[0], now->rake.at[1] },
 				.turn_rad = now->section.turn_rad - heading(tools),
 				.push = now->section.on ? now->section.push_m / now->section.reach_m

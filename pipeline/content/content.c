@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "pipeline/content/content_settings.h"
 #include "pipeline/import/alignment.h"
+#include "storage/info_tools.h"
 
 static void set_defaults(struct content *content, const char *folder)
 {
@@ -107,6 +108,11 @@ static int complete(struct content *content, struct diagnostics *diagnostics)
 		return diagnostics_add(
 			diagnostics, -EBADMSG, NULL, 0,
 			"it names no scan; add 'scans = FILE' to its [model] section");
+	if (content->tools & INFO_TOOL_MEASURE && content->error_mm <= 0)
+		return diagnostics_add(diagnostics, -EBADMSG, NULL, 0,
+				       "who measures must be told how exact the scan is: add "
+				       "'error_mm = MILLIMETRES' to its [model] section, as the "
+				       "scan's report says, or take 'measure' out of tools");
 	memcpy(names, content->scans, sizeof(names));
 	memset(content->scans, 0, sizeof(content->scans));
 	content->scan_count = 0;

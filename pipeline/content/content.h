@@ -54,10 +54,11 @@ struct content {
 	uint8_t background[3];
 	bool has_start;
 	float start_eye_m[3], start_target_m[3]; /* valid if has_start */
-	unsigned tools;          /* tools that visitors have; bits of enum info_tool */
-	uint32_t grid_points;    /* 4..32, along the longest side of the bounding box */
-	uint32_t face_px;        /* size of the finest sampling face: 128, 256 ... 4096 */
-	uint32_t quality;        /* 1..100 */
+	unsigned tools;       /* tools that visitors have; bits of enum info_tool */
+	double error_mm;      /* a point of the scan may be so far from the surface; 0: not known */
+	uint32_t grid_points; /* 4..32, along the longest side of the bounding box */
+	uint32_t face_px;     /* size of the finest sampling face: 128, 256 ... 4096 */
+	uint32_t quality;     /* 1..100 */
 	enum tile_effort effort; /* of tiles */
 	uint64_t budget_bytes;   /* of the whole release; 0: none. Not in temple.ini */
 	enum content_quality_rule quality_rule;

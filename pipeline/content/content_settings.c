@@ -167,6 +167,11 @@ static bool set_tools(const struct setting *setting, void *target, const char *v
 	return true;
 }
 
+static bool set_error_mm(const struct setting *setting, void *target, const char *value)
+{
+	return settings_numbers(setting, value, &((struct content *)target)->error_mm, 1);
+}
+
 static bool set_face_px(const struct setting *setting, void *target, const char *value)
 {
 	const uint32_t *px = &((struct content *)target)->face_px;
@@ -285,9 +290,12 @@ static const struct setting settings[CONTENT_SETTINGS] = {
 	NUMBERS("model", "sun", "three numbers x y z, pointing to the sun", set_sun, sun, -FLT_MAX,
 		FLT_MAX),
 	SETTING("model", "background", "a colour as #rrggbb", set_background),
+	NUMBERS("model", "error_mm", "millimetres above 0, up to 10000", set_error_mm, error_mm,
+		1e-6, 10000),
 	NUMBERS("view", "start", "eye X Y Z target X Y Z in metres, two different places",
 		set_start, start_eye_m, -FLT_MAX, FLT_MAX),
-	SETTING("view", "tools", "light, section, or both, each once", set_tools),
+	SETTING("view", "tools", "light, section and measure, or some of them, each once",
+		set_tools),
 	NUMBERS("grid", "points", NULL, settings_whole, grid_points, 4, 32),
 	NUMBERS("grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px, face_px, 128,
 		4096),

@@ -15,6 +15,7 @@
 #include "pipeline/content/info_tours.h"
 #include "storage/info_index.h"
 #include "storage/info_schema.h"
+#include "storage/info_tools.h"
 
 /* The paper's three tables, extended for a proper relational design: the identity of an information
  * (it may be assigned to several parts and exists in several languages), corners, pictures and
@@ -304,15 +305,17 @@ static void write_tour(struct writer *w, int64_t id, const struct draft_tour *to
 		write_stop(w, id, i, &tour->stops[i]);
 }
 
-static void write_tools(struct writer *w, unsigned tools)
+static void write_tools(struct writer *w, unsigned tools, double scan_error_m)
 {
 	if (tools)
-		run(w, "CREATE TABLE tool(name TEXT PRIMARY KEY) WITHOUT ROWID");
+		run(w, "CREATE TABLE tool(name TEXT PRIMARY KEY, error_m REAL) WITHOUT ROWID");
 	for (unsigned i = 0; i < INFO_TOOL_NAMES; i++) {
 		if (!(tools & 1u << i))
 			continue;
-		prepare(w, "INSERT INTO tool VALUES(?)");
+		prepare(w, "INSERT INTO tool VALUES(?,?)");
 		bind_text(w, info_tool_names[i]);
+		if (1u << i == INFO_TOOL_MEASURE)
+			bind_real(w, scan_error_m);
 		insert(w);
 	}
 }
@@ -384,7 +387,7 @@ static void write_database(struct writer *w, const struct draft *draft)
 	}
 	for (uint32_t i = 0; i < draft->tour_count; i++)
 		write_tour(w, i, &draft->tours[i]);
-	write_tools(w, draft->options->tools);
+	write_tools(w, draft->options->tools, draft->options->scan_error_m);
 	write_spoken(w, draft);
 	if (w->code == SQLITE_OK)
 		w->code = info_index_make(w->db, INFO_SCHEMA_VERSION);

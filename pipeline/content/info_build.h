@@ -33,6 +33,7 @@ struct info_build_options {
 	const char *const *languages; /* such as "en"; every title must exist in the first one */
 	uint32_t language_count;      /* 1 .. INFO_LANGUAGES_MAX */
 	unsigned tools;               /* bits of enum info_tool */
+	double scan_error_m;          /* said to those who measure; above 0 with that tool */
 	const struct info_text_instead *instead;
 	uint32_t instead_count;
 	/* Looks at no more than the first bytes of pictures, and does not decode sound, for a check

@@ -52,6 +52,7 @@ static void set_options(struct sources *sources)
 							.languages = sources->languages,
 							.language_count = content->language_count,
 							.tools = content->tools,
+							.scan_error_m = content->error_mm / 1000,
 							.diagnostics = &sources->found,
 							.judge_faces = part_faces_judge,
 							.place_faces = part_faces_place,

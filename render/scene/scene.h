@@ -138,6 +138,10 @@ void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count);
  * shown patches. Returns false where nothing is there. */
 bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
 		float point_m[3]);
+/* The same, and how far the shown surface is from the scan's there, in metres: an estimate of the
+ * root mean square by the size of the triangles. */
+bool scene_pick_surface(struct scene *scene, const struct camera *camera, float x_px, float y_px,
+			float point_m[3], float *error_m);
 /* Returns the id of the smallest part under the pixel by the release's labels, or "" where it
  * belongs to no part; borrowed until the next scene_draw. NULL: nothing is there, the labels are
  * not here yet, or the release has none. */

@@ -9,19 +9,47 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_scenery.h"
 
+/* The shown surface is off the scan's by a 22nd of the triangles' sides at most, as a root mean
+ * square, in all levels of all scans that were measured (docs/tools.md). */
+#define SPACINGS_AN_ERROR 22.0f
+
+static float error_of(const struct scene *scene, const struct geometry_hit *hit)
+{
+	const struct patch_bvh *bvh = &scene->geometry.patches[hit->patch].content.bvh;
+	uint32_t piece = 0;
+
+	while (piece + 1 < bvh->piece_count &&
+	       bvh->pieces[piece + 1].first_triangle <= hit->on.triangle)
+		piece++;
+	return bvh->pieces[piece].spacing_m / SPACINGS_AN_ERROR;
+}
+
 bool scene_pick(struct scene *scene, const struct camera *camera, float x_px, float y_px,
 		float point_m[3])
 {
+	float error_m;
+
+	return scene_pick_surface(scene, camera, x_px, y_px, point_m, &error_m);
+}
+
+bool scene_pick_surface(struct scene *scene, const struct camera *camera, float x_px, float y_px,
+			float point_m[3], float *error_m)
+{
+	struct geometry_hit hit;
+	bool on_scan, on_scenery;
 	float direction[3], distance = INFINITY, least = camera->near_m;
 	if (!scene->has_hierarchy)
 		return false;
 	camera_ray(camera, x_px, y_px, direction);
-	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance) ||
-	    (!geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least,
-			   &distance, NULL) &
-	     (scene_ray_scenery(scene, camera->eye_m, direction, least, &distance) ==
-	      SCENERY_NONE)))
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance))
 		return false;
+	on_scan = geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least,
+			       &distance, &hit);
+	on_scenery = scene_ray_scenery(scene, camera->eye_m, direction, least, &distance) !=
+		     SCENERY_NONE;
+	if (!on_scan && !on_scenery)
+		return false;
+	*error_m = on_scenery ? 0 : error_of(scene, &hit);
 	vec_add_scaled(point_m, camera->eye_m, distance, direction);
 	return true;
 }

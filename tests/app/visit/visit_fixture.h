@@ -161,8 +161,8 @@ static inline int begin_visit(void **state)
 	eye_aim(&visit.eye, &visit.viewport, now_ms);
 	snprintf(visits, sizeof(visits), "%s/visits.csv", folder);
 	CHECK(counting_init(&visit.counting, &visit.shown, visits, NULL) == 0);
-	tools_init(&visit.tools,
-		   &(struct tools_env){ &visit.shown, &visit.eye, &visit.anchors, &visit.redraw });
+	tools_init(&visit.tools, &(struct tools_env){ &visit.shown, &visit.eye, &visit.viewport,
+						      &visit.anchors, &visit.redraw });
 	tour_player_init(&visit.tours, &(struct tour_player_env){ &visit.shown, &visit.eye,
 								  &visit.counting, &visit.redraw });
 	back_init(&visit.back, &(struct back_env){ &visit.shown, &visit.eye, &visit.tours });

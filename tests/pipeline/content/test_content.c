@@ -60,9 +60,9 @@ static void every_key_is_read(void **state)
 {
 	static const char ini[] =
 		"# a comment\n[model]\nname = Banteay of the Test\nscans = tower.ply, tower.ply\n"
-		"up = y\nunit = mm\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
+		"up = y\nunit = mm\nerror_mm = 2.5\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
 		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
-		"tools = section, light\n[grid]\n"
+		"tools = section, measure light\n[grid]\n"
 		"points = 32\nface_px = 1024\nquality = 90\neffort = quick\n[samples]\nquality = features\n[hierarchy]\nkind = tree\nsimplify = features\n"
 		"patch_triangles = 1000\nblock_triangles = 2000\nlattice_mm = 0.5\n[release]\npublish_share = 0.5\nlanguages = en fr km pt-BR\n";
 	char folder[256];
@@ -78,7 +78,8 @@ static void every_key_is_read(void **state)
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
 	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
 	CHECK(content.background[0] == 255 && content.has_start);
-	CHECK(content.tools == (INFO_TOOL_LIGHT | INFO_TOOL_SECTION));
+	CHECK(content.tools == (INFO_TOOL_LIGHT | INFO_TOOL_SECTION | INFO_TOOL_MEASURE));
+	CHECK(content.error_mm == 2.5);
 	CHECK(content.start_eye_m[2] == 3 && content.start_target_m[1] == 0.5f);
 	CHECK(content.grid_points == 32 && content.face_px == 1024 && content.quality == 90);
 	CHECK(content.effort == TILE_QUICK);
@@ -142,7 +143,11 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
 		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },
 		{ "tools", "[view]\n\ntools = light, lens\n",
-		  "line 3: tools must be light, section, or both, each once, not 'light, lens'" },
+		  "line 3: tools must be light, section and measure, or some of them, each once, not "
+		  "'light, lens'" },
+		{ "error", "[model]\nerror_mm = 0\n", "millimetres above 0" },
+		{ "measure", "[model]\nscans = tower.ply\n[view]\ntools = measure\n",
+		  "add 'error_mm = MILLIMETRES' to its [model] section" },
 		{ "tools-twice", "[view]\ntools = light light\n", "each once" },
 		{ "share", "[release]\npublish_share = 0\n", "above 0" },
 		{ "languages", "[release]\nlanguages = en f\n", "language tags" },

@@ -300,6 +300,17 @@ static void rays_meet_what_is_shown(void **state)
 		met += there;
 	}
 	CHECK(met > 10);
+	/* From farther away less detail is shown, so what is measured is less exact. */
+	struct camera far_off = usual_camera;
+	float near_error, far_error;
+	for (int k = 0; k < 3; k++)
+		far_off.eye_m[k] += 9 * (far_off.eye_m[k] - far_off.target_m[k]);
+	CHECK(scene_pick_surface(stage.scene, &usual_camera, WIDTH / 2, HEIGHT / 2, point,
+				 &near_error));
+	settle(&stage, &far_off, NULL);
+	CHECK(scene_pick_surface(stage.scene, &far_off, WIDTH / 2, HEIGHT / 2, point, &far_error));
+	CHECK(near_error >= 0 && far_error > near_error && far_error < 1);
+	settle(&stage, &usual_camera, NULL);
 	const float above[3] = { 1, 1, 3 }, down[3] = { 0, 0, -2 }, up[3] = { 0, 0, 1 };
 	CHECK(fabsf(scene_clearance(stage.scene, above, down, 10) - 3) < 0.01f);
 	CHECK(isinf(scene_clearance(stage.scene, above, down, 2)));
