@@ -3,6 +3,7 @@
 #include "format/message.h"
 
 #include <errno.h>
+#include <string.h>
 
 #include "format/page.h"
 
@@ -62,6 +63,38 @@ static void get_status(struct message_status *out, struct reader *reader)
 	out->offline_since_s = reader_u64(reader);
 }
 
+bool message_name_is_fine(const char *name)
+{
+	static const char allowed[] =
+		"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-~%/";
+	const size_t size = strlen(name);
+
+	return size > 0 && size <= MESSAGE_NAME_MAX && strspn(name, allowed) == size &&
+	       name[0] != '.' && name[0] != '/' && name[size - 1] != '/' && !strstr(name, "/.") &&
+	       !strstr(name, "//");
+}
+
+static void put_name(struct buffer *out, const char *name)
+{
+	const size_t size = strlen(name);
+
+	buffer_put_u8(out, (uint8_t)size);
+	buffer_put(out, name, size);
+}
+
+/* Returns whether it is a name. */
+static bool get_name(char out[MESSAGE_NAME_MAX + 1], struct reader *reader)
+{
+	const struct bytes name = reader_bytes(reader, reader_u8(reader));
+
+	if (name.size > MESSAGE_NAME_MAX)
+		return false;
+	if (name.size > 0)
+		memcpy(out, name.data, name.size);
+	out[name.size] = '\0';
+	return strlen(out) == name.size && message_name_is_fine(out);
+}
+
 /* Puts the rest of the packet; its size must not exceed the maximum of its kind. */
 static void put_rest(struct buffer *out, struct bytes rest, size_t most)
 {
@@ -95,6 +128,17 @@ void message_encode(struct buffer *out, const struct message *message)
 		break;
 	case MESSAGE_TRUST:
 		buffer_put_u32(out, message->root_version);
+		break;
+	case MESSAGE_ASK_FILE:
+		buffer_put_u8(out, (uint8_t)message->file.source);
+		buffer_put_u32(out, message->file.bytes_max);
+		put_name(out, message->file.name);
+		break;
+	case MESSAGE_FILE:
+		buffer_put_u8(out, (uint8_t)message->file.source);
+		buffer_put_u8(out, (uint8_t)message->file.answer);
+		put_name(out, message->file.name);
+		put_rest(out, message->file.bytes, MESSAGE_META_BYTES_MAX);
 		break;
 	case MESSAGE_SYNCED:
 		buffer_put_u8(out, message->synced);
@@ -134,6 +178,29 @@ static bool object_in_range(const struct message *message)
 	return inlined == 0 || inlined == message->object.size;
 }
 
+static bool get_asked_file(struct message_file *out, struct reader *reader)
+{
+	const uint8_t source = reader_u8(reader);
+
+	out->source = (enum meta_source)source;
+	out->bytes_max = reader_u32(reader);
+	return source <= META_FROM_STICK && out->bytes_max > 0 &&
+	       out->bytes_max <= MESSAGE_META_BYTES_MAX && get_name(out->name, reader);
+}
+
+static bool get_file(struct message_file *out, struct reader *reader)
+{
+	const uint8_t source = reader_u8(reader), answer = reader_u8(reader);
+
+	out->source = (enum meta_source)source;
+	out->answer = (enum file_answer)answer;
+	if (source > META_FROM_STICK || answer > FILE_TOO_LARGE || !get_name(out->name, reader))
+		return false;
+	out->bytes = reader_bytes(reader, reader_left(reader));
+	return (out->bytes.size > 0) == (out->answer == FILE_IS_HERE) &&
+	       out->bytes.size <= MESSAGE_META_BYTES_MAX;
+}
+
 /* Reads the fields of *out's kind. Returns true if each is in its range. */
 static bool get_fields(struct message *out, struct reader *reader)
 {
@@ -164,6 +231,10 @@ static bool get_fields(struct message *out, struct reader *reader)
 	case MESSAGE_TRUST:
 		out->root_version = reader_u32(reader);
 		return true;
+	case MESSAGE_ASK_FILE:
+		return get_asked_file(&out->file, reader);
+	case MESSAGE_FILE:
+		return get_file(&out->file, reader);
 	case MESSAGE_SYNCED:
 		small = reader_u8(reader);
 		out->synced = small == 1;

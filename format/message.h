@@ -11,13 +11,18 @@
  *   MESSAGE_SYNC     make what was downloaded so far survive a power cut; the fetcher answers
  *                    with MESSAGE_SYNCED
  *   MESSAGE_TRUST    the version of the trust root that the kiosk has, on connecting and in answer
- *                    to every root: the fetcher looks for the next one
+ *                    to every root: the fetcher looks for the next one. MESSAGE_TRUST_TUF: the
+ *                    kiosk follows The Update Framework; the fetcher brings tuf/timestamp.json
+ *                    alone, in every period, and the kiosk asks for all else
+ *   MESSAGE_ASK_FILE bring a file of tuf/ by its name; another one ends an earlier request to the
+ *                    same source
  *
  * Fetcher to kiosk
  *   MESSAGE_OBJECT   the object's bytes: inline up to MESSAGE_INLINE_MAX, else a sealed memfd
  *   MESSAGE_MISSING  not available now (offline, or the server does not have it, or it is damaged);
  *                    the fetcher keeps trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
+ *   MESSAGE_FILE     answers MESSAGE_ASK_FILE, once the source has answered
  *   MESSAGE_SYNCED   answers MESSAGE_SYNC: true if the data is safe, false if the disk failed
  *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute; also the sign
  *                    of life by which the kiosk detects that the fetcher hangs
@@ -36,11 +41,13 @@ enum message_kind {
 	MESSAGE_ASK_META,
 	MESSAGE_SYNC,
 	MESSAGE_TRUST,
+	MESSAGE_ASK_FILE,
 	MESSAGE_OBJECT = 64,
 	MESSAGE_MISSING,
 	MESSAGE_META,
 	MESSAGE_STATUS,
 	MESSAGE_SYNCED,
+	MESSAGE_FILE,
 };
 
 enum {
@@ -49,10 +56,15 @@ enum {
 	MESSAGE_META_BYTES_MAX = 64 * 1024,
 	MESSAGE_RELEASES_MAX = 4, /* releases in use at once */
 	MESSAGE_PERIOD_S_MAX = 86400,
+	MESSAGE_NAME_MAX = 200, /* characters of a file's name */
 };
+
+/* In place of the version of a trust root. */
+#define MESSAGE_TRUST_TUF UINT32_MAX
 
 enum meta_role { META_ROOT, META_RELEASE, META_TIMESTAMP };
 enum meta_source { META_FROM_SERVER, META_FROM_STICK };
+enum file_answer { FILE_IS_HERE, FILE_NOT_THERE, FILE_TOO_LARGE };
 enum missing_reason { MISSING_OFFLINE, MISSING_NOT_FOUND, MISSING_DAMAGED };
 
 struct message_want {
@@ -75,6 +87,15 @@ struct message_status {
 	uint64_t received_bytes; /* from the network since start, TLS and headers included */
 	uint64_t cache_bytes, cache_budget_bytes;
 	uint64_t offline_since_s; /* wall clock, seconds since 1970; 0 while online */
+};
+
+/* Letters, digits and . _ - ~ %, and slashes between parts that do not begin with a dot. */
+struct message_file {
+	char name[MESSAGE_NAME_MAX + 1];
+	enum meta_source source;
+	uint32_t bytes_max;      /* when it is asked for: the size beyond which it is not wanted */
+	enum file_answer answer; /* when it is answered */
+	struct bytes bytes;      /* borrowed; empty unless the answer is FILE_IS_HERE */
 };
 
 struct message {
@@ -107,8 +128,12 @@ struct message {
 			enum meta_source source;
 		} meta;
 		struct message_status status;
+		struct message_file file; /* of MESSAGE_ASK_FILE and MESSAGE_FILE */
 	};
 };
+
+/* Returns whether a name is one that struct message_file may hold. */
+bool message_name_is_fine(const char *name);
 
 /* Appends one packet. A message that exceeds the limits above (an inline object larger than
  * MESSAGE_INLINE_MAX) sets the error of out to -EFBIG; other fields are not checked. */

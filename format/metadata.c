@@ -339,8 +339,12 @@ static int open_signed(cJSON **out, enum meta_role role, const struct trust_root
 static int read_release(struct release *release, const cJSON *json)
 {
 	const char *root = text_member(json, "root"), *comment = text_member(json, "comment");
-	uint64_t root_bytes;
+	uint64_t root_bytes, tuf_root = 0;
 
+	/* Publishers before this one did not write it. */
+	if (cJSON_GetObjectItemCaseSensitive(json, "tuf_root") &&
+	    !whole_member(json, "tuf_root", 0, UINT32_MAX, &tuf_root))
+		return -EBADMSG;
 	if (!whole_member(json, "sequence", 1, (uint64_t)WHOLE_MAX, &release->sequence) ||
 	    !time_member(json, "expires_s", &release->expires_s) || !root ||
 	    hash_from_hex(&release->root, root) < 0 || hash_is_zero(release->root) ||
@@ -348,26 +352,50 @@ static int read_release(struct release *release, const cJSON *json)
 	    strlen(comment) >= sizeof(release->comment))
 		return -EBADMSG;
 	release->root_bytes = (uint32_t)root_bytes;
+	release->tuf_root = (uint32_t)tuf_root;
 	memcpy(release->comment, comment, strlen(comment) + 1);
 	return 0;
+}
+
+static int take_release(struct release *out, const cJSON *json, const char **why)
+{
+	struct release release = { 0 };
+
+	if (read_release(&release, json) < 0)
+		return refuse(why, -EBADMSG,
+			      "the release file lacks a member or has an invalid one");
+	*out = release;
+	return 0;
+}
+
+int release_decode_target(struct release *out, struct bytes file, const char **why)
+{
+	struct envelope envelope;
+	cJSON *json = NULL;
+	int rc = envelope_open(&envelope, file);
+
+	*out = (struct release){ 0 };
+	if (rc == 0) {
+		json = open_payload(&envelope, META_RELEASE);
+		rc = json ? 0 : -EBADMSG;
+	}
+	rc = rc < 0 ? refuse(why, rc, "not a release file") : take_release(out, json, why);
+	cJSON_Delete(json);
+	buffer_finish(&envelope.payload);
+	return rc;
 }
 
 int release_decode(struct release *out, const struct trust_root *trust, struct bytes file,
 		   const char **why)
 {
-	struct release release = { 0 };
 	cJSON *json;
 	int rc = open_signed(&json, META_RELEASE, trust, file, why);
 
-	*out = release;
-	if (rc < 0)
-		return rc;
-	rc = read_release(&release, json);
+	*out = (struct release){ 0 };
+	if (rc == 0)
+		rc = take_release(out, json, why);
 	cJSON_Delete(json);
-	if (rc < 0)
-		return refuse(why, rc, "the release file lacks a member or has an invalid one");
-	*out = release;
-	return 0;
+	return rc;
 }
 
 static int read_timestamp(struct timestamp *timestamp, const cJSON *json)

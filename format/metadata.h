@@ -35,6 +35,8 @@ struct release {
 	struct hash root; /* hash of the root page */
 	uint32_t root_bytes;
 	char comment[256]; /* written by the publisher, for people */
+	/* The last version of tuf/N.root.json when it was published; 0: there is none. */
+	uint32_t tuf_root;
 };
 
 struct timestamp {
@@ -58,6 +60,9 @@ must_check int trust_root_next(struct trust_root *trust, struct bytes file, cons
 /* See above. These two check only the keys of their own role. */
 must_check int release_decode(struct release *out, const struct trust_root *trust,
 			      struct bytes file, const char **why);
+/* Reads a release.json without its signatures: for one that is a signed target of The Update
+ * Framework. Returns as release_decode. */
+must_check int release_decode_target(struct release *out, struct bytes file, const char **why);
 must_check int timestamp_decode(struct timestamp *out, const struct trust_root *trust,
 				struct bytes file, const char **why);
 

@@ -143,6 +143,8 @@ int release_encode(struct buffer *out, const struct release *release,
 		   cJSON_AddStringToObject(json, "root", root) &&
 		   cJSON_AddNumberToObject(json, "root_bytes", release->root_bytes) &&
 		   cJSON_AddStringToObject(json, "comment", release->comment);
+	if (complete && release->tuf_root > 0)
+		complete = cJSON_AddNumberToObject(json, "tuf_root", release->tuf_root);
 	return sign_payload(out, META_RELEASE, json, complete, keys, key_count);
 }
 

@@ -2,6 +2,7 @@
  * that arrives, and repeats all requests after a reconnect. */
 #include "net/client.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
@@ -444,6 +445,10 @@ static int handle_message(struct net_client *client, const struct message *messa
 		if (message->meta.role == META_ROOT)
 			send_trust(client);
 		return 0;
+	case MESSAGE_FILE:
+		if (events->file)
+			events->file(data, &message->file);
+		return 0;
 	case MESSAGE_SYNCED:
 		if (events->synced)
 			events->synced(data, message->synced);
@@ -695,7 +700,18 @@ void net_client_sync(struct net_client *client)
 
 void net_client_trust(struct net_client *client, uint32_t root_version)
 {
+	const bool begins_tuf =
+		root_version == MESSAGE_TRUST_TUF && client->options.root_version != root_version;
+
 	client->options.root_version = root_version;
+	if (begins_tuf) /* no root came that the fetcher waits to be told about */
+		send_trust(client);
+}
+
+void net_client_ask_file(struct net_client *client, const struct message_file *file)
+{
+	assert(message_name_is_fine(file->name));
+	send_message(client, &(struct message){ .kind = MESSAGE_ASK_FILE, .file = *file });
 }
 
 void net_client_keep(struct net_client *client, struct hash hash)

@@ -24,6 +24,8 @@ struct net_client_events {
 	/* Connection and cache figures; received_bytes covers all fetchers since
 	 * net_client_create. */
 	void (*status)(void *data, const struct message_status *status);
+	/* The answer to net_client_ask_file; *file is borrowed and unchecked. */
+	void (*file)(void *data, const struct message_file *file);
 };
 
 struct net_client_options {
@@ -36,7 +38,7 @@ struct net_client_options {
 	/* at least 4 MiB; smaller values are raised */
 	uint64_t cache_budget_bytes;
 	uint32_t poll_s; /* seconds between checks for a new release; 0: the fetcher's default */
-	uint32_t root_version; /* version of the trust root that the kiosk has; 0: none */
+	uint32_t root_version; /* as for net_client_trust */
 	const char *ca_file;   /* copied; certificate authority for https; NULL: the system's */
 	const char *redirect_hosts; /* copied; passed to a fetcher that is started; NULL: none */
 	struct net_client_events events;
@@ -71,9 +73,14 @@ void net_client_drop(struct net_client *client, struct hash hash);
 /* Asks the fetcher to write everything received so far durably; the synced event answers. The
  * answer is lost if the fetcher exits: ask again in that case. */
 void net_client_sync(struct net_client *client);
-/* Sets the version of the trust root that the kiosk accepted. Call it from the meta event, so that
- * the fetcher looks for the next root after it. */
+/* Sets the version of the trust root that the kiosk accepted; 0: none; MESSAGE_TRUST_TUF: it
+ * follows The Update Framework. Call it from the meta event, so that the fetcher looks for the next
+ * root after it. */
 void net_client_trust(struct net_client *client, uint32_t root_version);
+/* Asks for a file of the folder tuf/ of a source; *file is copied. An earlier request to the same
+ * source that was not answered ends. Lost if the fetcher exits: ask again when the timestamp comes
+ * anew. A name that a packet cannot hold is our own mistake. */
+void net_client_ask_file(struct net_client *client, const struct message_file *file);
 /* Asks the cache to keep this object. Remembered until net_client_use_release and repeated after
  * the fetcher restarts. The cache keeps up to three quarters of its budget this way. */
 void net_client_keep(struct net_client *client, struct hash hash);

@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "base/metrics_socket.h"
 #include "base/service.h"
+#include "net/asked_file.h"
 #include "net/downloader.h"
 #include "net/packets.h"
 #include "net/poll.h"
@@ -52,6 +53,7 @@ struct fetch {
 	struct metrics_refusal refusal; /* the last refusal of something from the server */
 	struct downloader *downloader;
 	struct poll *poll;
+	struct asked_file *asked;
 	struct stick *stick;            /* NULL: no stick is used */
 	struct metrics_socket *metrics; /* NULL: not offered */
 	uint32_t root_version;          /* version of the trust root that the kiosk has */
@@ -81,6 +83,7 @@ static void disconnect_kiosk(struct fetch *fetch, const char *why)
 	packets_finish(&fetch->kiosk);
 	downloader_clear(fetch->downloader);
 	poll_stop(fetch->poll);
+	asked_file_drop(fetch->asked);
 	if (fetch->listen_fd < 0)
 		fetch->ends = true;
 }
@@ -171,6 +174,11 @@ static void on_stick_meta(void *data, enum meta_role role, uint32_t version, str
 	send_to_kiosk(data, &message, -1);
 }
 
+static void on_file(void *data, const struct message_file *file)
+{
+	send_to_kiosk(data, &(struct message){ .kind = MESSAGE_FILE, .file = *file }, -1);
+}
+
 static void on_stick_object(void *data, struct hash hash, int rc, struct bytes bytes)
 {
 	struct fetch *fetch = data;
@@ -213,6 +221,12 @@ static int handle_message(struct fetch *fetch, const struct message *message)
 		fetch->root_version = message->root_version;
 		stick_trust(fetch->stick, message->root_version);
 		poll_trust(fetch->poll, message->root_version);
+		return 0;
+	case MESSAGE_ASK_FILE:
+		if (message->file.source == META_FROM_STICK)
+			stick_ask_file(fetch->stick, &message->file);
+		else
+			asked_file_want(fetch->asked, &message->file);
 		return 0;
 	case MESSAGE_SYNC:
 		send_to_kiosk(fetch,
@@ -351,6 +365,7 @@ static void work(struct fetch *fetch)
 			downloader_look_up_again(fetch->downloader);
 		downloader_work(fetch->downloader);
 		poll_work(fetch->poll);
+		asked_file_work(fetch->asked);
 		send_status(fetch);
 	}
 	flush_cache(fetch);
@@ -368,10 +383,12 @@ static int timeout_ms(const struct fetch *fetch)
 	if (fetch->has_kiosk) {
 		int64_t downloader_ms = downloader_due_ms(fetch->downloader),
 			poll_ms = poll_due_ms(fetch->poll);
+		int64_t asked_ms = asked_file_due_ms(fetch->asked);
 		int64_t stick_ms = stick_due_ms(fetch->stick, kiosk_has_room(fetch));
 
 		due_ms = downloader_ms < due_ms ? downloader_ms : due_ms;
 		due_ms = poll_ms < due_ms ? poll_ms : due_ms;
+		due_ms = asked_ms < due_ms ? asked_ms : due_ms;
 		due_ms = stick_ms < due_ms ? stick_ms : due_ms;
 		due_ms = fetch->status_ms < due_ms ? fetch->status_ms : due_ms;
 	}
@@ -479,9 +496,13 @@ static int create_modules(struct fetch *fetch)
 	struct poll_options poll = {
 		.link = &fetch->link, .period_s = options->poll_s, .meta = on_meta, .data = fetch
 	};
+	struct asked_file_options asked = { .link = &fetch->link,
+					    .answered = on_file,
+					    .data = fetch };
 	struct stick_options stick = { .folder = options->stick_path,
 				       .meta = on_stick_meta,
 				       .object = on_stick_object,
+				       .file = on_file,
 				       .is_wanted = is_wanted_of_stick,
 				       .data = fetch };
 	int rc = http_create(&fetch->http, &http);
@@ -491,7 +512,7 @@ static int create_modules(struct fetch *fetch)
 	downloader.stick = fetch->stick;
 	if (rc == 0)
 		rc = cache_create(&fetch->cache, &cache);
-	downloader.http = poll.http = fetch->http;
+	downloader.http = poll.http = asked.http = fetch->http;
 	downloader.cache = fetch->cache;
 	link_init(&fetch->link);
 	fetch->link.refusal = &fetch->refusal;
@@ -499,6 +520,8 @@ static int create_modules(struct fetch *fetch)
 		rc = downloader_create(&fetch->downloader, &downloader);
 	if (rc == 0)
 		rc = poll_create(&fetch->poll, &poll);
+	if (rc == 0)
+		rc = asked_file_create(&fetch->asked, &asked);
 	if (rc == 0)
 		rc = watch(fetch, http_fd(fetch->http), SOURCE_HTTP, EPOLLIN, EPOLL_CTL_ADD);
 	if (rc == 0 && fetch->stick)
@@ -546,6 +569,7 @@ static void stop(struct fetch *fetch)
 {
 	metrics_socket_destroy(fetch->metrics);
 	poll_destroy(fetch->poll);
+	asked_file_destroy(fetch->asked);
 	downloader_destroy(fetch->downloader);
 	packets_finish(&fetch->kiosk);
 	stick_destroy(fetch->stick);

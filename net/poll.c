@@ -133,12 +133,17 @@ static struct known *known_of_stage(struct poll *poll)
 	}
 }
 
+static bool is_tuf(const struct poll *poll)
+{
+	return poll->root_version == MESSAGE_TRUST_TUF;
+}
+
 static const char *path_of_stage(const struct poll *poll, char out[PATH_BYTES])
 {
 	if (poll->stage == STAGE_ROOT)
 		snprintf(out, PATH_BYTES, "root/%u.json", poll->root_version + 1);
 	else
-		snprintf(out, PATH_BYTES, "%s.json",
+		snprintf(out, PATH_BYTES, "%s%s.json", is_tuf(poll) ? "tuf/" : "",
 			 poll->stage == STAGE_RELEASE ? "release" : "timestamp");
 	return out;
 }
@@ -157,15 +162,14 @@ static bool on_piece(void *data, struct bytes piece)
 static void take_body(struct poll *poll, const char *etag)
 {
 	struct known *known = known_of_stage(poll);
-	bool same = known->file.size == poll->body.size && poll->body.size > 0 &&
-		    memcmp(known->file.data, poll->body.data, poll->body.size) == 0;
+	bool same = bytes_equal(buffer_bytes(&known->file), buffer_bytes(&poll->body));
 
 	/* Roots are requested without an ETag. An attacker who can forge an answer can also forge
 	 * its ETag, and would make the server answer "not modified" for a root that we never
 	 * received. */
-	if (poll->stage != STAGE_ROOT)
+	if (poll->stage != STAGE_ROOT && !is_tuf(poll))
 		snprintf(known->etag, sizeof(known->etag), "%s", etag);
-	if (same || poll->body.size == 0)
+	if ((same && !is_tuf(poll)) || poll->body.size == 0)
 		return;
 	buffer_clear(&known->file);
 	buffer_put(&known->file, poll->body.data, poll->body.size);
@@ -237,6 +241,10 @@ static void on_done(void *data, const struct http_result *result)
 		pause_round(poll, period_ms(poll));
 		return;
 	}
+	if (is_tuf(poll)) {
+		pause_round(poll, period_ms(poll));
+		return;
+	}
 	if (poll->stage == STAGE_VERDICT) /* new root: wait for the kiosk's verdict */
 		return;
 	poll->stage = poll->stage == STAGE_ROOT ? STAGE_TIMESTAMP : STAGE_RELEASE;
@@ -273,7 +281,7 @@ void poll_work(struct poll *poll)
 	if (!poll->running || poll->stage != STAGE_IDLE || clock_now_ms() < poll->next_ms ||
 	    !link_may_request(poll->options.link))
 		return;
-	poll->stage = STAGE_ROOT;
+	poll->stage = is_tuf(poll) ? STAGE_TIMESTAMP : STAGE_ROOT;
 	request_file(poll);
 }
 

@@ -32,8 +32,10 @@ struct job_object {
 	struct buffer bytes;
 };
 
+enum job_kind { JOB_LOOK, JOB_OBJECTS, JOB_FILE };
+
 struct job {
-	bool looks; /* true: look for a stick; false: read objects */
+	enum job_kind kind;
 	bool forgets;
 	uint32_t root_version;
 	enum stick_change change;
@@ -43,6 +45,8 @@ struct job {
 	size_t root_count;
 	struct job_object objects[OBJECTS_MAX];
 	size_t object_count;
+	struct message_file file;
+	struct buffer file_bytes;
 };
 
 enum worker_state { WORKER_IDLE, WORKER_BUSY, WORKER_DONE };
@@ -79,6 +83,7 @@ struct stick {
 		*requests; /* owned; sorted by priority unless requests_changed; the best is last */
 	uint32_t request_count, request_room;
 	bool requests_changed;
+	struct message_file asked; /* the file to read next; no name: none */
 	uint64_t orders;
 };
 
@@ -90,9 +95,14 @@ static void run_job(struct worker *worker)
 
 	if (job->forgets)
 		stick_reader_forget(&worker->reader);
-	if (job->looks) {
+	if (job->kind == JOB_LOOK) {
 		job->change = stick_reader_look(&worker->reader, job->root_version, job->files,
 						&job->file_count);
+		return;
+	}
+	if (job->kind == JOB_FILE) {
+		job->file.answer =
+			stick_reader_file(&worker->reader, job->file.name, &job->file_bytes);
 		return;
 	}
 	for (size_t i = 0; i < job->object_count; i++) {
@@ -110,6 +120,7 @@ static void clear_job(struct job *job)
 		buffer_finish(&job->files[i].bytes);
 	for (size_t i = 0; i < job->object_count; i++)
 		buffer_finish(&job->objects[i].bytes);
+	buffer_finish(&job->file_bytes);
 	job->file_count = job->object_count = 0;
 }
 
@@ -294,6 +305,12 @@ bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
 	return true;
 }
 
+void stick_ask_file(struct stick *stick, const struct message_file *file)
+{
+	if (stick)
+		stick->asked = *file;
+}
+
 /* Sorts the most urgent request to the end. */
 static int by_priority(const void *a, const void *b)
 {
@@ -326,7 +343,7 @@ static void begin_look(struct stick *stick)
 {
 	struct job *job = &stick->worker->job;
 
-	job->looks = true;
+	job->kind = JOB_LOOK;
 	job->forgets = stick->forgets;
 	job->root_version = stick->root_version;
 	stick->forgets = false;
@@ -355,9 +372,23 @@ static void begin_read(struct stick *stick)
 	}
 	if (job->object_count == 0)
 		return;
-	job->looks = job->forgets = false;
+	job->kind = JOB_OBJECTS;
+	job->forgets = false;
 	memcpy(job->roots, stick->roots, sizeof(job->roots));
 	job->root_count = stick->root_count;
+	stick->began_ms = clock_now_ms();
+	set_state(stick->worker, WORKER_BUSY);
+}
+
+static void begin_file(struct stick *stick)
+{
+	struct job *job = &stick->worker->job;
+
+	job->kind = JOB_FILE;
+	job->forgets = false;
+	job->file = stick->asked;
+	stick->asked.name[0] = '\0';
+	buffer_init(&job->file_bytes, job->file.bytes_max);
 	stick->began_ms = clock_now_ms();
 	set_state(stick->worker, WORKER_BUSY);
 }
@@ -394,6 +425,15 @@ static void finish_read(struct stick *stick)
 	}
 }
 
+static void finish_file(struct stick *stick)
+{
+	struct message_file file = stick->worker->job.file;
+
+	if (file.answer == FILE_IS_HERE)
+		file.bytes = buffer_bytes(&stick->worker->job.file_bytes);
+	stick->options.file(stick->options.data, &file);
+}
+
 /* Handles a finished job; returns true if a stick was plugged in. The result of a job that was
  * given up is discarded, because another stick may be present by now. */
 static bool finish_job(struct stick *stick)
@@ -404,8 +444,10 @@ static bool finish_job(struct stick *stick)
 		stick->hangs = false;
 		stick->forgets = true;
 		stick->look_ms = clock_now_ms() + HANG_PAUSE_MS;
-	} else if (stick->worker->job.looks) {
+	} else if (stick->worker->job.kind == JOB_LOOK) {
 		inserted = finish_look(stick);
+	} else if (stick->worker->job.kind == JOB_FILE) {
+		finish_file(stick);
 	} else {
 		finish_read(stick);
 	}
@@ -422,7 +464,7 @@ static void give_up_job(struct stick *stick)
 
 	log_warn("net", "the stick does not respond and is not used for a while");
 	stick->hangs = true;
-	for (size_t i = 0; !job->looks && i < job->object_count; i++)
+	for (size_t i = 0; job->kind == JOB_OBJECTS && i < job->object_count; i++)
 		answer(stick, job->objects[i].want.hash, -ENOENT, (struct bytes){ NULL, 0 });
 	refuse_all(stick);
 }
@@ -444,6 +486,8 @@ bool stick_work(struct stick *stick, bool has_room)
 		inserted = finish_job(stick);
 	if (clock_now_ms() >= stick->look_ms)
 		begin_look(stick);
+	else if (stick->asked.name[0])
+		begin_file(stick);
 	else if (has_room && stick->request_count > 0)
 		begin_read(stick);
 	return inserted;
@@ -467,7 +511,9 @@ int64_t stick_due_ms(const struct stick *stick, bool has_room)
 	if (!stick)
 		return INT64_MAX;
 	if (state_of(stick->worker) == WORKER_IDLE)
-		return has_room && stick->request_count > 0 ? 0 : stick->look_ms;
+		return stick->asked.name[0] || (has_room && stick->request_count > 0)
+			       ? 0
+			       : stick->look_ms;
 	/* The event descriptor reports the end of the job. */
 	return stick->hangs ? INT64_MAX : stick->began_ms + stick->options.patience_ms;
 }

@@ -20,6 +20,8 @@ struct stick_options {
 	/* The answer to stick_request; bytes are borrowed. rc 0: the bytes are correct. -ENOENT:
 	 * the object is not there. -EBADMSG: it is there, but damaged. */
 	void (*object)(void *data, struct hash hash, int rc, struct bytes bytes);
+	/* The answer to stick_ask_file; everything in *file is borrowed for the call. */
+	void (*file)(void *data, const struct message_file *file);
 	/* Called before an object is read, because the want may have been dropped. */
 	bool (*is_wanted)(void *data, struct hash hash);
 	void *data;
@@ -43,7 +45,8 @@ must_check bool stick_work(struct stick *stick, bool has_room);
 int64_t stick_due_ms(const struct stick *stick, bool has_room);
 /* Reports everything again at the next look, because another kiosk asks. */
 void stick_forget(struct stick *stick);
-/* Sets the version of the kiosk's trust root. Roots after this version are reported. */
+/* Sets the version of the kiosk's trust root. Roots after this version are reported; with
+ * MESSAGE_TRUST_TUF, tuf/timestamp.json is reported alone. */
 void stick_trust(struct stick *stick, uint32_t root_version);
 
 /* Requests an object, to be found by the locators of these releases (newest first). The releases of
@@ -51,5 +54,8 @@ void stick_trust(struct stick *stick, uint32_t root_version);
  * follows. */
 must_check bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
 			      const struct message_want *want);
+/* Asks for a file of the stick's folder tuf/; *file is copied. A file that was asked for before and
+ * is not answered yet is dropped. Without a stick the answer is FILE_NOT_THERE. */
+void stick_ask_file(struct stick *stick, const struct message_file *file);
 
 #endif

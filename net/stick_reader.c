@@ -13,7 +13,7 @@
 
 enum {
 	LOCATOR_BYTES_MAX = 64 << 20,
-	NAME_BYTES = 96,
+	NAME_BYTES = MESSAGE_NAME_MAX + 16,
 };
 
 int stick_reader_init(struct stick_reader *reader, const char *folder)
@@ -82,14 +82,15 @@ static int read_file(struct stick_reader *reader, const char *name, size_t ceili
 	return rc;
 }
 
-static int read_stamp(struct stick_reader *reader)
+static int read_stamp(struct stick_reader *reader, bool tuf)
 {
 	static const char *const below[] = { "", "release/" };
 	int rc = -ENOENT;
 
 	for (size_t i = 0; rc < 0 && i < ARRAY_COUNT(below); i++) {
 		reader->below = below[i];
-		rc = read_file(reader, "timestamp.json", MESSAGE_META_BYTES_MAX);
+		rc = read_file(reader, tuf ? "tuf/timestamp.json" : "timestamp.json",
+			       MESSAGE_META_BYTES_MAX);
 	}
 	return rc;
 }
@@ -112,9 +113,10 @@ static void add_file(const struct stick_reader *reader, struct stick_file *files
 static void read_all(struct stick_reader *reader, uint32_t root_version, struct stick_file *files,
 		     size_t *count)
 {
+	const bool tuf = root_version == MESSAGE_TRUST_TUF;
 	char name[NAME_BYTES];
 
-	for (uint32_t i = 1; i <= STICK_ROOTS_MAX; i++) {
+	for (uint32_t i = 1; i <= STICK_ROOTS_MAX && !tuf; i++) {
 		snprintf(name, sizeof(name), "root/%u.json", root_version + i);
 		if (read_file(reader, name, MESSAGE_META_BYTES_MAX) < 0)
 			break;
@@ -123,15 +125,17 @@ static void read_all(struct stick_reader *reader, uint32_t root_version, struct 
 	buffer_clear(&reader->file);
 	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
 	add_file(reader, files, count, META_TIMESTAMP, 0);
-	if (read_file(reader, "release.json", MESSAGE_META_BYTES_MAX) == 0)
+	if (!tuf && read_file(reader, "release.json", MESSAGE_META_BYTES_MAX) == 0)
 		add_file(reader, files, count, META_RELEASE, 0);
 }
 
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
 				    struct stick_file files[STICK_FILES_MAX], size_t *count)
 {
+	const bool tuf = root_version == MESSAGE_TRUST_TUF;
+
 	*count = 0;
-	if (read_stamp(reader) < 0) {
+	if (read_stamp(reader, tuf) < 0) {
 		close_files(reader); /* open files would prevent unmounting */
 		buffer_clear(&reader->stamp);
 		return STICK_REMOVED;
@@ -144,6 +148,22 @@ enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_v
 	buffer_put(&reader->stamp, reader->file.data, reader->file.size);
 	read_all(reader, root_version, files, count);
 	return STICK_INSERTED;
+}
+
+enum file_answer stick_reader_file(struct stick_reader *reader, const char *name,
+				   struct buffer *out)
+{
+	char path[NAME_BYTES];
+	int rc = -ENOENT;
+
+	if (reader->stamp.size > 0 &&
+	    snprintf(path, sizeof(path), "tuf/%s", name) < (int)sizeof(path))
+		rc = read_file(reader, path, out->ceiling);
+	if (rc == 0)
+		buffer_put(out, reader->file.data, reader->file.size);
+	if (rc == 0 && !out->error)
+		return FILE_IS_HERE;
+	return rc == -EFBIG ? FILE_TOO_LARGE : FILE_NOT_THERE;
 }
 
 /* ---- objects */

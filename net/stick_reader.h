@@ -21,7 +21,7 @@ struct stick_release {
 struct stick_reader {
 	const char *folder;  /* owned */
 	const char *below;   /* subfolder of the release: "" or "release/" */
-	struct buffer stamp; /* timestamp.json as last reported; empty: no stick */
+	struct buffer stamp; /* the timestamp as last reported; empty: no stick */
 	struct buffer file;  /* the file that was read last */
 	struct stick_release releases[MESSAGE_RELEASES_MAX];
 	size_t next_release; /* slot to be overwritten next */
@@ -45,9 +45,14 @@ void stick_reader_finish(struct stick_reader *reader); /* A zeroed struct is fin
 /* Makes the next look report everything again. */
 void stick_reader_forget(struct stick_reader *reader);
 /* Looks for a stick. On STICK_INSERTED, files[0 .. *count) holds what to report, in this order; the
- * caller owns their buffers. Roots are those after root_version. */
+ * caller owns their buffers. Roots are those after root_version; with MESSAGE_TRUST_TUF there is
+ * tuf/timestamp.json alone. */
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
 				    struct stick_file files[STICK_FILES_MAX], size_t *count);
+
+/* Reads a file of the release's folder tuf/ into out, whose ceiling is its size at most. */
+enum file_answer stick_reader_file(struct stick_reader *reader, const char *name,
+				   struct buffer *out);
 
 /* Reads a wanted object into *out, at the place given by the locator of one of these releases
  * (tried in order). -ENOENT: it is not there. -EBADMSG: it is there, but the bytes do not match the

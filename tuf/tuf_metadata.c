@@ -321,6 +321,20 @@ int tuf_file_verify(const struct tuf_file *file, const cJSON *keys, const cJSON 
 
 /* ---- what files say */
 
+int tuf_root_first(struct tuf_file *out, struct bytes bytes, const char **why)
+{
+	int rc = tuf_file_parse(out, bytes, TUF_ROOT, why);
+
+	if (rc < 0)
+		return rc;
+	rc = tuf_file_verify(out, tuf_root_keys(out), tuf_root_role(out, TUF_ROOT));
+	if (rc < 0) {
+		*why = "the root has not enough signatures of its own keys";
+		tuf_file_finish(out);
+	}
+	return rc;
+}
+
 const cJSON *tuf_root_keys(const struct tuf_file *root)
 {
 	return member(root->content, "keys");

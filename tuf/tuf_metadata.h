@@ -38,6 +38,11 @@ void tuf_file_finish(struct tuf_file *file);
 must_check int tuf_file_verify(const struct tuf_file *file, const struct cJSON *keys,
 			       const struct cJSON *role);
 
+/* Parses a root that nobody before it has signed: a first one, which must have enough signatures of
+ * its own keys. Returns as the two above; *why is set to a static text after -EKEYREJECTED too.
+ * *out is zeroed on failure. */
+must_check int tuf_root_first(struct tuf_file *out, struct bytes bytes, const char **why);
+
 /* Of a root: its keys, the role of a type, and whether file names carry versions and hashes. */
 const struct cJSON *tuf_root_keys(const struct tuf_file *root);
 const struct cJSON *tuf_root_role(const struct tuf_file *root, enum tuf_type type);

@@ -26,6 +26,7 @@
 #include "render/display/gl.h"
 #include "render/display/quads.h"
 #include "storage/state.h"
+#include "tuf/tuf_metadata.h"
 
 enum {
 	FLIP_MOST_MS = 3000, /* longest wait for a frame; the first mode set is slow */
@@ -332,9 +333,16 @@ static void check_storage(struct self_test *test)
 static void say_trust(struct self_test *test, const char *whose, struct bytes file)
 {
 	struct trust_root root;
-	const char *why = "";
+	struct tuf_file tuf;
+	const char *why = "", *unused;
+	int rc = trust_root_first(&root, file, &why);
 
-	if (trust_root_first(&root, file, &why) < 0)
+	if (rc < 0 && tuf_root_first(&tuf, file, &unused) == 0) {
+		root = (struct trust_root){ .version = tuf.version, .expires_s = tuf.expires_s };
+		tuf_file_finish(&tuf);
+		rc = 0;
+	}
+	if (rc < 0)
 		say(test, false, "trust", "%s: %s: get root/1.json from the publisher", whose, why);
 	else if (clock_wall_is_set() && root.expires_s < clock_wall_s())
 		say(test, false, "trust",
@@ -348,6 +356,7 @@ static void say_trust(struct self_test *test, const char *whose, struct bytes fi
 static bool check_remembered_trust(struct self_test *test)
 {
 	char path[PATH_MAX + 16];
+	struct state_tuf tuf;
 	struct state *state;
 	struct bytes file;
 	bool has;
@@ -355,8 +364,12 @@ static bool check_remembered_trust(struct self_test *test)
 	snprintf(path, sizeof(path), "%s/state.db", test->folder);
 	if (!test->folder[0] || access(path, F_OK) < 0 || state_create(&state, path) < 0)
 		return false;
-	has = state_trust(state, &file) == 0;
-	if (has)
+	has = true;
+	if (state_tuf(state, &tuf) == 0)
+		say_trust(test, "the stored trust root of The Update Framework", tuf.root);
+	else if (state_trust(state, &file) < 0)
+		has = false;
+	else
 		say_trust(test, "the stored trust root", file);
 	state_destroy(state);
 	return has;

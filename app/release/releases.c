@@ -21,6 +21,13 @@ static void on_remembered(void *data, struct hash root, int rc)
 	sessions_remembered(&releases->sessions, root, rc);
 }
 
+static void on_ask(void *data, const struct message_file *file)
+{
+	struct releases *releases = data;
+
+	net_client_ask_file(releases->net, file);
+}
+
 /* ---- events of the fetcher */
 
 static void on_object(void *data, struct hash hash, struct bytes bytes)
@@ -31,6 +38,15 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 	sessions_give(&releases->sessions, hash, bytes);
 	if (releases->options.object_arrived)
 		releases->options.object_arrived(releases->options.sessions.data);
+	redraw_ask(releases->options.sessions.redraw);
+}
+
+static void on_file(void *data, const struct message_file *file)
+{
+	struct releases *releases = data;
+
+	updater_file(releases->updater, file);
+	net_client_trust(releases->net, updater_root_version(releases->updater));
 	redraw_ask(releases->options.sessions.redraw);
 }
 
@@ -82,6 +98,7 @@ int releases_init(struct releases *releases, const struct releases_options *opti
 		.trust_path = options->trust_path,
 		.begin = on_begin,
 		.remembered = on_remembered,
+		.ask = on_ask,
 		.data = releases,
 	};
 	struct net_client_options net = options->net;
@@ -94,8 +111,12 @@ int releases_init(struct releases *releases, const struct releases_options *opti
 	if (rc < 0)
 		return rc;
 	net.root_version = updater_root_version(releases->updater);
-	net.events =
-		(struct net_client_events){ on_object, on_missing, on_meta, on_synced, on_status };
+	net.events = (struct net_client_events){ .object = on_object,
+						 .missing = on_missing,
+						 .meta = on_meta,
+						 .file = on_file,
+						 .synced = on_synced,
+						 .status = on_status };
 	net.data = releases;
 	rc = net_client_create(&releases->net, &net);
 	if (rc < 0)

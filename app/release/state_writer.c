@@ -13,11 +13,13 @@
 
 /* The changes that are requested. The thread takes the struct over, with its buffers. */
 struct wish {
-	bool release_wanted, trust_wanted;
+	bool release_wanted, trust_wanted, tuf_wanted;
 	bool proof_wanted, return_wanted;
 	struct state_release release;      /* its file is in release_file */
 	struct buffer release_file, trust; /* owned */
 	enum state_clear clear;            /* cleared together with storing the trust root */
+	struct buffer tuf[4];              /* in the order of struct state_tuf; owned */
+	enum state_clear tuf_clear;        /* cleared together with storing these */
 	int64_t time_floor_s;              /* 0: no change requested */
 };
 
@@ -39,18 +41,22 @@ static void wish_init(struct wish *wish)
 	*wish = (struct wish){ 0 };
 	buffer_init(&wish->release_file, STATE_FILE_BYTES_MAX);
 	buffer_init(&wish->trust, STATE_FILE_BYTES_MAX);
+	for (size_t i = 0; i < ARRAY_COUNT(wish->tuf); i++)
+		buffer_init(&wish->tuf[i], STATE_FILE_BYTES_MAX);
 }
 
 static void wish_finish(struct wish *wish)
 {
 	buffer_finish(&wish->release_file);
 	buffer_finish(&wish->trust);
+	for (size_t i = 0; i < ARRAY_COUNT(wish->tuf); i++)
+		buffer_finish(&wish->tuf[i]);
 }
 
 static bool is_something(const struct wish *wish)
 {
-	return wish->release_wanted || wish->trust_wanted || wish->time_floor_s > 0 ||
-	       wish->proof_wanted || wish->return_wanted;
+	return wish->release_wanted || wish->trust_wanted || wish->tuf_wanted ||
+	       wish->time_floor_s > 0 || wish->proof_wanted || wish->return_wanted;
 }
 
 /* ---- on the thread */
@@ -68,6 +74,15 @@ static void answer(struct state_writer *writer, const struct state_release *rele
 		log_error("app", "kiosk bug: the state writer cannot report its result");
 }
 
+static void set_tuf(struct state_writer *writer, const struct wish *wish)
+{
+	const struct state_tuf tuf = { buffer_bytes(&wish->tuf[0]), buffer_bytes(&wish->tuf[1]),
+				       buffer_bytes(&wish->tuf[2]), buffer_bytes(&wish->tuf[3]) };
+
+	if (state_set_tuf(writer->state, &tuf, wish->tuf_clear) < 0)
+		log_warn("app", "the trusted metadata could not be stored");
+}
+
 /* Writes the requested changes. The trust root comes first, because the release may be signed by
  * its keys. */
 static void fulfil(struct state_writer *writer, struct wish *wish)
@@ -75,6 +90,8 @@ static void fulfil(struct state_writer *writer, struct wish *wish)
 	if (wish->trust_wanted &&
 	    state_set_trust(writer->state, buffer_bytes(&wish->trust), wish->clear) < 0)
 		log_warn("app", "the trust root could not be stored");
+	if (wish->tuf_wanted)
+		set_tuf(writer, wish);
 	/* These two concern the release in use, not the one stored below. */
 	if (wish->proof_wanted && state_prove(writer->state) < 0)
 		log_warn("app", "the end of the release's trial could not be stored");
@@ -199,6 +216,25 @@ int state_writer_set_trust(struct state_writer *writer, struct bytes file, enum 
 	rc = copy_file(&wish->trust, file);
 	wish->trust_wanted = rc == 0;
 	wish->clear |= clear;
+	if (clear & STATE_CLEAR_TIME_FLOOR)
+		wish->time_floor_s = 0; /* it was requested under the old key */
+	pthread_cond_signal(&writer->asked);
+	pthread_mutex_unlock(&writer->lock);
+	return rc;
+}
+
+int state_writer_set_tuf(struct state_writer *writer, const struct state_tuf *tuf,
+			 enum state_clear clear)
+{
+	const struct bytes files[] = { tuf->root, tuf->timestamp, tuf->snapshot, tuf->targets };
+	struct wish *wish = &writer->wish;
+	int rc = 0;
+
+	pthread_mutex_lock(&writer->lock);
+	for (size_t i = 0; i < ARRAY_COUNT(files) && rc == 0; i++)
+		rc = copy_file(&wish->tuf[i], files[i]);
+	wish->tuf_wanted = rc == 0;
+	wish->tuf_clear |= clear;
 	if (clear & STATE_CLEAR_TIME_FLOOR)
 		wish->time_floor_s = 0; /* it was requested under the old key */
 	pthread_cond_signal(&writer->asked);

@@ -33,6 +33,9 @@ must_check int state_writer_activate(struct state_writer *writer,
  * raise the floor again. Returns 0; -ENOMEM, -EFBIG: not requested. */
 must_check int state_writer_set_trust(struct state_writer *writer, struct bytes file,
 				      enum state_clear clear);
+/* Requests state_set_tuf; the files are copied. As state_writer_set_trust. */
+must_check int state_writer_set_tuf(struct state_writer *writer, const struct state_tuf *tuf,
+				    enum state_clear clear);
 /* Request state_prove and state_fall_back: the stored release works, or does not. A failed write is
  * only logged; the next start tries again. */
 void state_writer_prove(struct state_writer *writer);

@@ -108,6 +108,16 @@ int trust_timestamp(struct trust *trust, struct bytes file, struct trust_time ti
 	return 0;
 }
 
+static int judge(const struct trust *trust, struct trust_time time, const struct release *release,
+		 const char **why)
+{
+	if (release->sequence < trust->sequence_floor)
+		return refuse(-ESTALE, why, "release.json is older than the release that is shown");
+	if (has_expired(time, release->expires_s))
+		return refuse(-EKEYEXPIRED, why, "release.json has expired: publish again");
+	return release->sequence > trust->sequence_floor ? 1 : 0;
+}
+
 int trust_release(struct trust *trust, struct bytes file, struct trust_time time,
 		  struct release *out, const char **why)
 {
@@ -123,11 +133,15 @@ int trust_release(struct trust *trust, struct bytes file, struct trust_time time
 	if (!hash_equal(hash_of(file), trust->timestamp.release) ||
 	    out->sequence != trust->timestamp.sequence)
 		return refuse(-ESTALE, why, "release.json is not the one timestamp.json names");
-	if (out->sequence < trust->sequence_floor)
-		return refuse(-ESTALE, why, "release.json is older than the release that is shown");
-	if (has_expired(time, out->expires_s))
-		return refuse(-EKEYEXPIRED, why, "release.json has expired: publish again");
-	return out->sequence > trust->sequence_floor ? 1 : 0;
+	return judge(trust, time, out, why);
+}
+
+int trust_target(const struct trust *trust, struct bytes file, struct trust_time time,
+		 struct release *out, const char **why)
+{
+	const int rc = release_decode_target(out, file, why);
+
+	return rc < 0 ? rc : judge(trust, time, out, why);
 }
 
 void trust_accept(struct trust *trust, uint64_t sequence)

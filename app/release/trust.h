@@ -55,6 +55,9 @@ must_check int trust_timestamp(struct trust *trust, struct bytes file, struct tr
  * loaded and shown; 0 if it is the stored one. */
 must_check int trust_release(struct trust *trust, struct bytes file, struct trust_time time,
 			     struct release *out, const char **why);
+/* The same for a release.json that is a signed target of The Update Framework. */
+must_check int trust_target(const struct trust *trust, struct bytes file, struct trust_time time,
+			    struct release *out, const char **why);
 /* Raises the sequence floor, because a release with this sequence was stored. */
 void trust_accept(struct trust *trust, uint64_t sequence);
 

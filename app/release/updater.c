@@ -9,6 +9,7 @@
 
 #include "app/release/state_writer.h"
 #include "app/release/trust.h"
+#include "app/release/tuf_follower.h"
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/safe_open.h"
@@ -28,13 +29,36 @@ struct updater {
 	bool on_trial;              /* shown is not yet known to work */
 	struct buffer shown_file;   /* release.json of shown; empty: not known */
 	uint64_t writing; /* sequence that the state writer was asked to store last; 0: stored */
-	const char *said; /* reason logged last; static; "": none since an accepted release */
+	char said[METRICS_REFUSAL_WHY_BYTES]; /* reason logged last; "": none since an accepted
+						 release */
 	struct metrics_refusal refusal;
 	bool stamp_refused;      /* timestamp.json was: a refused release.json follows from it */
 	struct release next;     /* being loaded; sequence 0: none */
 	struct buffer next_file; /* release.json of next */
 	enum meta_source next_source;
+	struct tuf_follower tuf;
 };
+
+/* Trusts the root that was given by hand, of either form, and stores it. */
+static int pin(struct updater *updater, struct state *state, struct bytes file, const char **why)
+{
+	int rc = trust_pin(&updater->trust, file, why), stored;
+
+	if (rc == 0) {
+		stored = state_set_trust(state, file, STATE_CLEAR_NOTHING);
+	} else if (tuf_follower_pin(&updater->tuf, file, NULL) == 0) {
+		const struct state_tuf kept = tuf_follower_kept(&updater->tuf);
+
+		rc = 0;
+		stored = state_set_tuf(state, &kept, STATE_CLEAR_NOTHING);
+		updater->tuf.changed = false;
+	} else {
+		return rc;
+	}
+	if (stored < 0)
+		log_warn("app", "the trust root could not be stored");
+	return rc;
+}
 
 /* Finds the trust root: the stored one, or the file given at the first start, which is then stored.
  * Returns 0 also if there is none. */
@@ -45,6 +69,8 @@ static int find_trust(struct updater *updater, struct state *state)
 	const char *why = "";
 	int rc = state_trust(state, &file);
 
+	if (tuf_follower_is_on(&updater->tuf))
+		return 0;
 	if (rc == 0) {
 		rc = trust_pin(&updater->trust, file, &why);
 		if (rc == 0)
@@ -62,9 +88,7 @@ static int find_trust(struct updater *updater, struct state *state)
 	if (rc < 0)
 		why = open_problem(rc);
 	else
-		rc = trust_pin(&updater->trust, buffer_bytes(&pinned), &why);
-	if (rc == 0 && state_set_trust(state, buffer_bytes(&pinned), STATE_CLEAR_NOTHING) < 0)
-		log_warn("app", "the trust root could not be stored");
+		rc = pin(updater, state, buffer_bytes(&pinned), &why);
 	if (rc < 0)
 		log_error("app", "%s: %s", updater->options.trust_path, why);
 	buffer_finish(&pinned);
@@ -107,7 +131,14 @@ static void judge_trial(struct updater *updater, struct state *state)
 static int read_state(struct updater *updater, struct state *state)
 {
 	struct state_release release;
+	struct state_tuf tuf = { 0 };
+	int rc;
 
+	if (state_tuf(state, &tuf) < 0)
+		tuf = (struct state_tuf){ 0 };
+	rc = tuf_follower_init(&updater->tuf, &tuf);
+	if (rc < 0)
+		return rc;
 	judge_trial(updater, state);
 	updater->trust.sequence_floor = state_sequence_floor(state);
 	updater->trust.time_floor_s = state_time_floor_s(state);
@@ -135,7 +166,6 @@ int updater_create(struct updater **out, const struct updater_options *options)
 	if (!updater)
 		return -ENOMEM;
 	updater->options = *options;
-	updater->said = "";
 	buffer_init(&updater->next_file, METADATA_FILE_BYTES_MAX);
 	buffer_init(&updater->shown_file, METADATA_FILE_BYTES_MAX);
 	rc = state_create(&state, options->state_path);
@@ -159,6 +189,7 @@ void updater_destroy(struct updater *updater)
 	if (!updater)
 		return;
 	state_writer_destroy(updater->writer);
+	tuf_follower_finish(&updater->tuf);
 	buffer_finish(&updater->next_file);
 	buffer_finish(&updater->shown_file);
 	free(updater);
@@ -208,8 +239,17 @@ static void begin_next(struct updater *updater, const struct release *release, s
 	updater->options.begin(updater->options.data, release->root, release->root_bytes);
 }
 
-/* Drops the release being loaded if a key that signed it is no longer trusted, and returns to the
- * one that is shown. */
+/* Drops the release being loaded and returns to the one that is shown. */
+static void drop_next(struct updater *updater, const char *why)
+{
+	note(updater, updater->next.sequence, why);
+	updater->next = (struct release){ 0 };
+	if (!hash_is_zero(updater->shown.root))
+		updater->options.begin(updater->options.data, updater->shown.root,
+				       updater->shown.root_bytes);
+}
+
+/* Drops the release being loaded if a key that signed it is no longer trusted. */
 static void drop_distrusted(struct updater *updater)
 {
 	struct release release;
@@ -219,11 +259,7 @@ static void drop_distrusted(struct updater *updater)
 	    release_decode(&release, &updater->trust.root, buffer_bytes(&updater->next_file),
 			   &why) == 0)
 		return;
-	note(updater, updater->next.sequence, why);
-	updater->next = (struct release){ 0 };
-	if (!hash_is_zero(updater->shown.root))
-		updater->options.begin(updater->options.data, updater->shown.root,
-				       updater->shown.root_bytes);
+	drop_next(updater, why);
 }
 
 /* Accepts root N+1. What the withdrawn keys had set is cleared, in memory and, in one transaction
@@ -250,6 +286,119 @@ static int take_root(struct updater *updater, struct bytes bytes, const char **w
 	return 0;
 }
 
+/* Counts a refusal, and logs it unless it is the one that was logged last. */
+static void refuse(struct updater *updater, const char *name, const char *why)
+{
+	if (strncmp(why, updater->said, sizeof(updater->said) - 1) != 0)
+		log_warn("app", "refused %s: %s", name, why);
+	snprintf(updater->said, sizeof(updater->said), "%s", why);
+	metrics_refusal_note(&updater->refusal, name, why);
+}
+
+/* ---- The Update Framework: docs/tuf.md, On the terminal */
+
+/* Has what the follower changed written, and forgets what withdrawn keys had set. */
+static void store_tuf(struct updater *updater)
+{
+	struct tuf_follower *tuf = &updater->tuf;
+	const struct state_tuf kept = tuf_follower_kept(tuf);
+	const enum state_clear clear = tuf->clear;
+
+	if (!tuf->changed)
+		return;
+	if (clear & STATE_CLEAR_SEQUENCE_FLOOR)
+		updater->trust.sequence_floor = 0;
+	if (clear & STATE_CLEAR_TIME_FLOOR)
+		updater->trust.time_floor_s = 0;
+	if (clear != STATE_CLEAR_NOTHING)
+		log_info("app", "root %u revokes keys; the limits that they set are cleared",
+			 tuf->root_version);
+	if (state_writer_set_tuf(updater->writer, &kept, clear) < 0)
+		log_warn("app", "the trusted metadata could not be stored");
+	if (tuf->issued_s > updater->trust.time_floor_s) {
+		updater->trust.time_floor_s = tuf->issued_s;
+		state_writer_raise_time_floor(updater->writer, tuf->issued_s);
+	}
+	tuf->changed = false;
+	tuf->clear = STATE_CLEAR_NOTHING;
+	if (clear != STATE_CLEAR_NOTHING && updater->next.sequence > 0)
+		drop_next(updater, "a key that signed it is no longer trusted");
+}
+
+/* Runs the workflow as far as the files that are here go. */
+static void follow_tuf(struct updater *updater, enum meta_source source)
+{
+	const char *const name = source == META_FROM_STICK ? "tuf of the stick" : "tuf";
+	const struct bytes known[2] = { buffer_bytes(&updater->shown_file),
+					updater->next.sequence > 0
+						? buffer_bytes(&updater->next_file)
+						: (struct bytes){ NULL, 0 } };
+	const struct trust_time time = time_now(updater);
+	const char *why = updater->tuf.why;
+	struct release release;
+	struct buffer file;
+	int rc;
+
+	if (updater->writing)
+		return; /* as for a root in updater_meta; the next timestamp runs it again */
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = tuf_follower_run(&updater->tuf, source, time.now_s, known, &file);
+	store_tuf(updater);
+	if (rc == -EAGAIN) {
+		updater->options.ask(updater->options.data, &updater->tuf.ask);
+		buffer_finish(&file);
+		return;
+	}
+	if (rc == 0) {
+		rc = trust_target(&updater->trust, buffer_bytes(&file), time, &release, &why);
+		if (rc > 0)
+			begin_next(updater, &release, buffer_bytes(&file), source);
+	}
+	if (rc < 0)
+		refuse(updater, name, why);
+	else
+		updater->said[0] = '\0';
+	buffer_finish(&file);
+}
+
+/* Handles a root of The Update Framework that was asked for because of a release. */
+static void go_over(struct updater *updater, const struct message_file *file)
+{
+	struct tuf_follower *tuf = &updater->tuf;
+	char name[64];
+	const int rc = tuf_follower_first(tuf, file, &updater->trust.root);
+
+	if (rc == 0) {
+		log_info("app",
+			 "root %u of The Update Framework is trusted from now on, and the earlier "
+			 "form no more",
+			 tuf->root_version);
+		store_tuf(updater);
+	} else if (rc == -EAGAIN) {
+		updater->options.ask(updater->options.data, &tuf->ask);
+	} else if (rc != -ENOKEY) {
+		snprintf(name, sizeof(name), "tuf/%.32s", file->name);
+		refuse(updater, name, tuf->why);
+	}
+}
+
+void updater_file(struct updater *updater, const struct message_file *file)
+{
+	if (!tuf_follower_is_on(&updater->tuf)) {
+		go_over(updater, file);
+		return;
+	}
+	tuf_follower_add(&updater->tuf, file);
+	follow_tuf(updater, file->source);
+}
+
+const struct tuf_follower *updater_tuf(const struct updater *updater)
+{
+	return tuf_follower_is_on(&updater->tuf) ? &updater->tuf : NULL;
+}
+
+/* ---- the earlier form */
+
 void updater_meta(struct updater *updater, enum meta_role role, uint32_t version,
 		  struct bytes bytes, enum meta_source source)
 {
@@ -265,6 +414,13 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 	const char *why = "";
 	int rc = 0;
 
+	if (tuf_follower_is_on(&updater->tuf)) {
+		if (role == META_TIMESTAMP && updater->options.ask) {
+			tuf_follower_begin(&updater->tuf, source, bytes);
+			follow_tuf(updater, source);
+		}
+		return;
+	}
 	switch (role) {
 	case META_ROOT:
 		if (version != updater->trust.root.version + 1)
@@ -283,22 +439,23 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		rc = trust_release(&updater->trust, bytes, time, &release, &why);
 		if (rc > 0)
 			begin_next(updater, &release, bytes, source);
+		if (rc >= 0 && updater->options.ask &&
+		    tuf_follower_begin_first(&updater->tuf, release.tuf_root, source))
+			updater->options.ask(updater->options.data, &updater->tuf.ask);
 		break;
 	}
-	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused)) {
-		if (why != updater->said) /* do not log the same reason every minute */
-			log_warn("app", "refused %s: %s", name, why);
-		updater->said = why;
-		metrics_refusal_note(&updater->refusal, name, why);
-	}
+	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused))
+		refuse(updater, name, why);
 	if (role == META_TIMESTAMP)
 		updater->stamp_refused = rc < 0;
 	if (rc >= 0 && role == META_RELEASE)
-		updater->said = "";
+		updater->said[0] = '\0';
 }
 
 uint32_t updater_root_version(const struct updater *updater)
 {
+	if (tuf_follower_is_on(&updater->tuf))
+		return MESSAGE_TRUST_TUF;
 	return updater->trust.trusted ? updater->trust.root.version : 0;
 }
 

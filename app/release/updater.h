@@ -8,18 +8,22 @@
 #include "base/metrics_refusal.h"
 #include "net/client.h"
 
+struct tuf_follower; /* app/release/tuf_follower.h */
 struct updater;
 
 struct updater_options {
 	const char *state_path; /* state.db; borrowed, needed by updater_create only */
-	const char *trust_path; /* root/1.json to trust if the state has no root; borrowed likewise;
-				   NULL: none */
+	const char *trust_path; /* root/1.json, or the root of The Update Framework, to trust if the
+				   state has no root; borrowed likewise; NULL: none */
 	/* Load this release: at start the stored one, later each new one, or the one before it.
 	 * Call updater_remember once it can be shown completely. */
 	void (*begin)(void *data, struct hash root, uint32_t root_bytes);
 	/* The release is stored on disk: show it. rc < 0: it is not; keep showing the other and ask
 	 * again later. */
 	void (*remembered)(void *data, struct hash root, int rc);
+	/* Ask the fetcher for a file, copied for the call; the answer is for updater_file. NULL:
+	 * the terminal does not go over to The Update Framework. */
+	void (*ask)(void *data, const struct message_file *file);
 	void *data;
 };
 
@@ -34,7 +38,10 @@ void updater_start(struct updater *updater);
  * here. version: of a root. A refused file is logged and counted. */
 void updater_meta(struct updater *updater, enum meta_role role, uint32_t version,
 		  struct bytes bytes, enum meta_source source);
-/* Returns the version of the trust root in use; 0: none. */
+/* Handles the answer to `ask`; everything in *file is borrowed for the call, and checked here. */
+void updater_file(struct updater *updater, const struct message_file *file);
+/* Returns the version of the trust root in use; 0: none; MESSAGE_TRUST_TUF: The Update Framework is
+ * followed. */
 uint32_t updater_root_version(const struct updater *updater);
 /* Returns whether the release being loaded was offered by a stick. */
 bool updater_next_on_stick(const struct updater *updater);
@@ -58,6 +65,8 @@ void updater_refuse(struct updater *updater, struct hash root, const char *why);
 /* Returns the last refusal of an offered release or its files. Borrowed; its counter rises with
  * each. */
 const struct metrics_refusal *updater_refusal(const struct updater *updater);
+/* What is trusted by The Update Framework: borrowed; NULL: the terminal does not follow it. */
+const struct tuf_follower *updater_tuf(const struct updater *updater);
 /* Returns a descriptor, borrowed, that is readable when updater_dispatch has something to do. */
 int updater_fd(const struct updater *updater);
 /* Handles an answer of the state writer and calls `remembered`. Returns 0. */

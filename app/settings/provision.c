@@ -11,6 +11,7 @@
 #include "app/release/trust.h"
 #include "base/log.h"
 #include "base/safe_open.h"
+#include "tuf/tuf_metadata.h"
 
 /* ---- reading and merging */
 
@@ -43,7 +44,8 @@ static const char *checked_trust(struct provision *provision)
 {
 	const char *path = beside(provision, provision->terminal.trust, provision->trust_path);
 	struct trust trust = { .sequence_floor = 0 };
-	const char *why = "";
+	struct tuf_file tuf = { 0 };
+	const char *why = "", *unused;
 	struct buffer file;
 	int rc;
 
@@ -52,9 +54,13 @@ static const char *checked_trust(struct provision *provision)
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = buffer_read_foreign(&file, path);
 	if (rc == 0)
-		rc = trust_pin(&trust, buffer_bytes(&file), &why);
+		rc = trust_pin(&trust, buffer_bytes(&file), &why) == 0 ||
+				     tuf_root_first(&tuf, buffer_bytes(&file), &unused) == 0
+			     ? 0
+			     : -EBADMSG;
 	else
 		why = open_problem(rc);
+	tuf_file_finish(&tuf);
 	buffer_finish(&file);
 	if (rc == 0)
 		return path;

@@ -126,3 +126,15 @@ int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version)
 		return -ENAMETOOLONG;
 	return buffer_read_file(out, path);
 }
+
+uint32_t keys_last_tuf_root(const char *folder)
+{
+	struct buffer file;
+	uint32_t version = 1;
+
+	buffer_init(&file, ROOT_BYTES_MAX);
+	while (keys_read_tuf_root(&file, folder, version) == 0)
+		version++;
+	buffer_finish(&file);
+	return version - 1;
+}

@@ -12,5 +12,7 @@ must_check int keys_make_tuf_root(const char *folder, const struct publisher_key
 
 /* Reads tuf/VERSION.root.json into *out, cleared first. -ENOENT: there is none. */
 must_check int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version);
+/* Returns the last version of tuf/N.root.json that is there, counted from 1 on; 0: none. */
+uint32_t keys_last_tuf_root(const char *folder);
 
 #endif

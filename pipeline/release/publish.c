@@ -14,6 +14,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/progress.h"
+#include "pipeline/keys/keys_tuf.h"
 #include "pipeline/release/release_tuf.h"
 
 enum { DAY_S = 86400 };
@@ -61,6 +62,7 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 		.expires_s = clock_wall_s() + life_or(target->release_life_s, RELEASE_LIFE_DAYS),
 		.root = root->hash,
 		.root_bytes = root->size,
+		.tuf_root = keys_last_tuf_root(target->keys_folder),
 	};
 	int rc;
 

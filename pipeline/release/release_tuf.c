@@ -140,10 +140,15 @@ static uint32_t next_timestamp(const char *release, struct buffer *file, uint32_
 static int put_timestamp(const char *release, const struct publisher_keys *keys, uint32_t version,
 			 uint32_t snapshot, struct buffer *file, int64_t life_s)
 {
-	return put(release, "tuf/timestamp.json", file,
-		   naming(TUF_TIMESTAMP, version, clock_wall_s() + life_s, "snapshot.json",
-			  snapshot, buffer_bytes(file)),
-		   &keys->timestamp);
+	const int64_t now_s = clock_wall_s();
+	cJSON *content = naming(TUF_TIMESTAMP, version, now_s + life_s, "snapshot.json", snapshot,
+				buffer_bytes(file));
+
+	/* A member of ours, which other clients ignore: terminals know then that it is not earlier.
+	 */
+	if (content && !cJSON_AddNumberToObject(content, "issued_s", (double)now_s))
+		content = drop_unless(content, false);
+	return put(release, "tuf/timestamp.json", file, content, &keys->timestamp);
 }
 
 /* Reads the snapshot of a version, if there is one. */

@@ -1,6 +1,7 @@
 #include "format/message.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,13 @@ static const struct message samples[] = {
 	{ .kind = MESSAGE_META, .meta = { META_ROOT, 7, { text, sizeof(text) }, META_FROM_STICK } },
 	{ .kind = MESSAGE_STATUS, .status = { 1, 12, 1ull << 40, 5, 6, 1700000000 } },
 	{ .kind = MESSAGE_TRUST, .root_version = 70 },
+	{ .kind = MESSAGE_TRUST, .root_version = MESSAGE_TRUST_TUF },
+	{ .kind = MESSAGE_ASK_FILE,
+	  .file = { .name = "2.root.json", .source = META_FROM_STICK, .bytes_max = 16384 } },
+	{ .kind = MESSAGE_FILE,
+	  .file = { .name = "targets/5a.release.json", .bytes = { text, sizeof(text) } } },
+	{ .kind = MESSAGE_FILE,
+	  .file = { .name = "a%2Fb.json", .source = META_FROM_STICK, .answer = FILE_TOO_LARGE } },
 };
 
 static struct buffer encoded(const struct message *message)
@@ -75,10 +83,14 @@ static void keeps_every_field(void **state)
 	buffer_finish(&wire);
 }
 
-/* Where the rest of the packet is the last field, a shorter packet may be a shorter field. */
-static bool has_a_rest(const struct message *message)
+/* Returns where the last field begins that takes the rest of the packet; 0: there is none. */
+static size_t rest_at(const struct message *message)
 {
-	return message->kind == MESSAGE_META;
+	if (message->kind == MESSAGE_META)
+		return 7;
+	if (message->kind == MESSAGE_FILE && message->file.answer == FILE_IS_HERE)
+		return 4 + strlen(message->file.name);
+	return 0;
 }
 
 static void refuses_every_truncated_packet(void **state)
@@ -96,8 +108,11 @@ static void refuses_every_truncated_packet(void **state)
 			rc = message_decode(&back, (struct bytes){ exact, n });
 			if (n == wire.size)
 				CHECK(rc == 0);
-			else if (has_a_rest(&samples[i]) && n > 7)
-				CHECK(rc == 0 && back.meta.bytes.size == n - 7);
+			else if (rest_at(&samples[i]) > 0 && n > rest_at(&samples[i]))
+				CHECK(rc == 0 &&
+				      (back.kind == MESSAGE_META
+					       ? back.meta.bytes.size
+					       : back.file.bytes.size) == n - rest_at(&samples[i]));
 			else if (samples[i].kind == MESSAGE_OBJECT && n == 21)
 				CHECK(rc == 0 && back.object.bytes.size == 0); /* in a descriptor */
 			else
@@ -116,7 +131,7 @@ static void refuses_bytes_after_the_last_field(void **state)
 		struct message back;
 
 		buffer_put_u8(&wire, 0);
-		if (!has_a_rest(&samples[i]))
+		if (rest_at(&samples[i]) == 0)
 			CHECK(message_decode(&back, buffer_bytes(&wire)) == -EBADMSG);
 		buffer_finish(&wire);
 	}
@@ -173,6 +188,63 @@ static void encodes_no_object_past_the_inline_ceiling(void **state)
 	free(large);
 }
 
+static void takes_no_name_that_leads_elsewhere(void **state)
+{
+	static const char *const bad[] = { "",     ".",     "..",     "/root.json", "../root.json",
+					   "a/",   "a//b",  "a/../b", "a/.b",       "a b",
+					   "a\\b", "a?b=c", "a#b",    "http://a",   "\xc3\xa9" };
+	char name[MESSAGE_NAME_MAX + 2];
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
+		struct message message = { .kind = MESSAGE_ASK_FILE, .file = { .bytes_max = 1 } };
+		struct buffer wire;
+
+		CHECK(!message_name_is_fine(bad[i]));
+		snprintf(message.file.name, sizeof(message.file.name), "%s", bad[i]);
+		wire = encoded(&message);
+		CHECK(message_decode(&message, buffer_bytes(&wire)) == -EBADMSG);
+		buffer_finish(&wire);
+	}
+	memset(name, 'a', sizeof(name));
+	name[MESSAGE_NAME_MAX + 1] = '\0';
+	CHECK(!message_name_is_fine(name));
+	name[MESSAGE_NAME_MAX] = '\0';
+	CHECK(message_name_is_fine(name) && message_name_is_fine("targets/0-9_~.%20/a..b"));
+}
+
+static void refuses_files_out_of_range(void **state)
+{
+	static uint8_t large[MESSAGE_META_BYTES_MAX + 1];
+	const struct message bad[] = {
+		{ .kind = MESSAGE_ASK_FILE, .file = { .name = "a", .bytes_max = 0 } },
+		{ .kind = MESSAGE_ASK_FILE,
+		  .file = { .name = "a", .bytes_max = MESSAGE_META_BYTES_MAX + 1 } },
+		{ .kind = MESSAGE_ASK_FILE,
+		  .file = { .name = "a", .bytes_max = 1, .source = (enum meta_source)2 } },
+		{ .kind = MESSAGE_FILE, .file = { .name = "a" } }, /* here, and empty */
+		{ .kind = MESSAGE_FILE,
+		  .file = { .name = "a", .answer = FILE_NOT_THERE, .bytes = { text, 1 } } },
+		{ .kind = MESSAGE_FILE, .file = { .name = "a", .answer = (enum file_answer)3 } },
+	};
+	struct message message = { .kind = MESSAGE_FILE,
+				   .file = { .name = "a", .bytes = { large, sizeof(large) } } };
+	struct buffer wire;
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
+		wire = encoded(&bad[i]);
+		CHECK(message_decode(&message, buffer_bytes(&wire)) == -EBADMSG);
+		buffer_finish(&wire);
+	}
+	message = (struct message){ .kind = MESSAGE_FILE,
+				    .file = { .name = "a", .bytes = { large, sizeof(large) } } };
+	buffer_init(&wire, MESSAGE_BYTES_MAX);
+	message_encode(&wire, &message);
+	CHECK(wire.error == -EFBIG);
+	buffer_finish(&wire);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -182,6 +254,8 @@ int main(void)
 		cmocka_unit_test(refuses_bytes_after_the_last_field),
 		cmocka_unit_test(refuses_sizes_out_of_range),
 		cmocka_unit_test(encodes_no_object_past_the_inline_ceiling),
+		cmocka_unit_test(takes_no_name_that_leads_elsewhere),
+		cmocka_unit_test(refuses_files_out_of_range),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -39,6 +39,8 @@ static void decode_all(struct bytes file)
 		abort();
 	if (release_decode(&release, &trust, file, NULL) == 0 && release.sequence == 0)
 		abort();
+	if (release_decode_target(&release, file, NULL) == 0 && release.sequence == 0)
+		abort();
 	if (timestamp_decode(&timestamp, &trust, file, NULL) == 0 && timestamp.sequence == 0)
 		abort();
 }

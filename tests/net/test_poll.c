@@ -268,6 +268,31 @@ static void refuses_endless_data(void **state)
 	free(large);
 }
 
+static void brings_the_timestamp_alone_to_a_kiosk_that_follows_tuf(void **state)
+{
+	struct stage *stage = *state;
+
+	look_once(stage);
+	kiosk_says(stage, MESSAGE_TRUST_TUF); /* begins a round at once */
+	answer("tuf/timestamp.json", "T");
+	poll_work(stage->poll);
+	CHECK(server.count == 4);
+	expect_passed(stage, "timestamp0:T ");
+	next_round(stage);
+	CHECK(!asked(0)->etag[0]);
+	answer("tuf/timestamp.json", "T"); /* the same again is passed on too */
+	expect_passed(stage, "timestamp0:T ");
+	next_round(stage);
+	answer("tuf/timestamp.json", "");
+	CHECK(strcmp(stage->refusal.what, "tuf/timestamp.json") == 0);
+	expect_passed(stage, "");
+	kiosk_says(stage, 1); /* another kiosk */
+	answer("root/2.json", "");
+	answer("timestamp.json", "T");
+	answer("release.json", "R");
+	expect_passed(stage, "timestamp0:T release0:R ");
+}
+
 #define STAGED(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void)
@@ -282,6 +307,7 @@ int main(void)
 		STAGED(says_all_again_when_asked),
 		STAGED(tries_again_after_pauses_when_the_server_is_away),
 		STAGED(refuses_endless_data),
+		STAGED(brings_the_timestamp_alone_to_a_kiosk_that_follows_tuf),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

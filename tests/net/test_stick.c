@@ -53,6 +53,9 @@ struct stage {
 	int answers, rc;
 	char object[64];
 	bool nobody_wants;
+	int files; /* answers to stick_ask_file */
+	struct message_file file;
+	char text[64]; /* of the file */
 };
 
 static struct hash pack = { { 5 } };
@@ -80,6 +83,16 @@ static void on_object(void *data, struct hash hash, int rc, struct bytes bytes)
 		 (const char *)bytes.data);
 }
 
+static void on_file(void *data, const struct message_file *file)
+{
+	struct stage *stage = data;
+
+	stage->files++;
+	stage->file = *file;
+	snprintf(stage->text, sizeof(stage->text), "%.*s", (int)file->bytes.size,
+		 (const char *)file->bytes.data);
+}
+
 static bool is_wanted(void *data, struct hash hash)
 {
 	const struct stage *stage = data;
@@ -94,6 +107,7 @@ static int set_up(void **state)
 	const struct stick_options options = { .folder = stage->folder,
 					       .meta = on_meta,
 					       .object = on_object,
+					       .file = on_file,
 					       .is_wanted = is_wanted,
 					       .data = stage };
 
@@ -236,6 +250,52 @@ static void tells_the_roots_after_the_one_that_the_kiosk_has(void **state)
 	stick_trust(stage->stick, 72);
 	stick_forget(stage->stick);
 	CHECK(look(stage) && strcmp(stage->said, "timestamp0:T release0:R ") == 0);
+}
+
+static void make_folder(const struct stage *stage, const char *name)
+{
+	char path[192];
+
+	in_folder(stage, path, name);
+	CHECK(mkdir(path, 0755) == 0);
+}
+
+/* Returns the answer; stage->text is what is in the file. */
+static enum file_answer ask_file(struct stage *stage, const char *name)
+{
+	struct message_file file = { .source = META_FROM_STICK, .bytes_max = 8 };
+
+	snprintf(file.name, sizeof(file.name), "%s", name);
+	stage->files = 0;
+	stick_ask_file(stage->stick, &file);
+	CHECK(stick_due_ms(stage->stick, true) == 0);
+	CHECK(!work(stage) && stage->files == 1);
+	CHECK(strcmp(stage->file.name, name) == 0 && stage->file.source == META_FROM_STICK);
+	return stage->file.answer;
+}
+
+static void brings_files_of_tuf_by_name(void **state)
+{
+	struct stage *stage = *state;
+
+	stick_trust(stage->stick, MESSAGE_TRUST_TUF);
+	CHECK(!look(stage));
+	CHECK(ask_file(stage, "1.root.json") == FILE_NOT_THERE); /* no stick */
+	put_release(stage, "release/", "T");
+	CHECK(!look(stage)); /* it has the earlier form alone */
+	make_folder(stage, "release/tuf");
+	make_folder(stage, "release/tuf/targets");
+	put_text(stage, "release/tuf/timestamp.json", "U");
+	put_text(stage, "release/tuf/1.root.json", "A");
+	put_text(stage, "release/tuf/large.json", "123456789");
+	put_text(stage, "release/tuf/targets/5a.release.json", "R");
+	CHECK(look(stage) && strcmp(stage->said, "timestamp0:U ") == 0);
+	CHECK(ask_file(stage, "1.root.json") == FILE_IS_HERE && strcmp(stage->text, "A") == 0);
+	CHECK(ask_file(stage, "targets/5a.release.json") == FILE_IS_HERE &&
+	      strcmp(stage->text, "R") == 0);
+	CHECK(ask_file(stage, "2.root.json") == FILE_NOT_THERE);
+	CHECK(ask_file(stage, "large.json") == FILE_TOO_LARGE && stage->text[0] == '\0');
+	CHECK(ask_file(stage, "targets") == FILE_NOT_THERE); /* a folder */
 }
 
 static void finds_a_folder_named_release(void **state)
@@ -421,6 +481,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		STAGED(tells_of_a_stick_once),
+		STAGED(brings_files_of_tuf_by_name),
 		STAGED(tells_the_roots_after_the_one_that_the_kiosk_has),
 		STAGED(finds_a_folder_named_release),
 		STAGED(gives_objects_by_the_locator),

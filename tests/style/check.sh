@@ -24,7 +24,7 @@ may_include() { # its answer is in $answer: a subshell for each of thousands of 
 	geometry | ui) answer="base format" ;;
 	render | storage) answer="base format geometry" ;;
 	net) answer="base format storage" ;;
-	app) answer="base format geometry board system render ui input sound storage net" ;;
+	app) answer="base format tuf geometry board system render ui input sound storage net" ;;
 	pipeline) answer="base format tuf geometry render storage" ;;
 	curator) answer="base format geometry render ui storage pipeline" ;;
 	tests) answer="base format tuf geometry board system render ui input sound storage net app pipeline curator health" ;;

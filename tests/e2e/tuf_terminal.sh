@@ -1,0 +1,70 @@
+#!/bin/bash
+# A terminal follows The Update Framework over nginx: one in the field goes over by a release signed both ways, follows
+# the next release after the earlier form is gone from the server, roots with other keys, and a stick; a power cut forgets
+# nothing. A new terminal begins with tuf/1.root.json. A root that the terminal's own root keys did not sign is not taken.
+set -eu
+cd "$(dirname "$0")/../.."
+. tests/e2e/lib.sh
+. tests/e2e/lib-content.sh
+. tests/e2e/lib-tuf.sh
+tuf_work build/e2e/tuf_terminal
+
+# ---- a terminal in the field, before anybody thought of The Update Framework
+publish "the first"
+serve "$release" "$work/server"
+terminal field "$release/root/1.json"
+wait_for 60 "the first release" shown field 1
+
+# ---- another root, which the terminal's root keys did not sign, then the right one
+"$content" keys "$work/content" --keys "$keys" --tuf >/dev/null
+mv "$keys/tuf" "$work/right"
+"$content" keys "$work/content" --keys "$work/others" --tuf >/dev/null
+cp -a "$work/others/tuf" "$keys/tuf"
+publish "with a root of strangers"
+wait_for 60 "a release of the earlier form" shown field 2
+wait_for 30 "the refusal of a root of strangers" said field 'refused tuf/1.root.json: .*not signed by the root keys'
+rm -rf "$keys/tuf" "$release/tuf"
+mv "$work/right" "$keys/tuf"
+publish "signed both ways"
+wait_for 60 "the release signed both ways" shown field 3
+wait_for 30 "going over" said field 'root 1 of The Update Framework is trusted from now on'
+
+# ---- what only the earlier form says counts no more, and the earlier form may go
+cp -a "$release" "$work/both"
+publish "without the earlier form"
+mkdir "$work/earlier"
+mv "$release/root" "$release/release.json" "$release/timestamp.json" "$work/earlier/"
+wait_for 60 "a release of The Update Framework alone" shown field 4
+refused field && fail "something was refused: $(grep refused "$work/field.log")"
+
+# ---- kill -9 and again: it follows what it followed, and refuses what is older
+kill_terminal field
+mv "$release" "$work/four"
+cp -a "$work/both" "$release"
+terminal field
+wait_for 60 "the refusal of what is older" said field 'refused tuf: timestamp .* is older than'
+has_shown field 4 || fail "not the release before the kill"
+rm -rf "$release"
+cp -a "$work/four" "$release"
+cp -a "$work/earlier/." "$release/" # the publisher goes on from there
+
+# ---- a new terminal, which never knew the earlier form
+terminal fresh "$keys/tuf/1.root.json"
+wait_for 60 "the first release of a new terminal" shown fresh 1
+said fresh 'release 4 is published' || fail "a new terminal shows another release"
+
+# ---- the next root
+tests/e2e/tuf_sign.py "$keys" "$release" root 'expires="2040-01-01T00:00:00Z"'
+publish "under root 2"
+wait_for 60 "a release under root 2" shown field 1
+wait_for 60 "a release under root 2" shown fresh 2
+
+# ---- a stick brings the next release to a terminal whose server is gone
+stop_server
+mkdir -p "$work/media"
+publish "on a stick"
+cp -a "$release" "$work/media/release"
+wait_for 60 "the release on the stick" said field 'is on the stick: on a stick'
+wait_for 60 "the release on the stick" shown field 2
+stop_terminal field
+stop_terminal fresh
