@@ -140,6 +140,8 @@ static void send_hello(struct session *session)
 
 	cJSON_AddStringToObject(json, "name", content->name);
 	cJSON_AddNumberToObject(json, "triangles", site->mesh->triangle_count);
+	if (content->error_mm > 0)
+		cJSON_AddNumberToObject(json, "error", content->error_mm / 1000);
 	add_point(json, "low", site->master->box_min_m);
 	add_point(json, "high", site->master->box_max_m);
 	if (content->has_start) {

@@ -2,6 +2,7 @@
 import { loadSession, may } from "./api.js";
 import { showAccount } from "./account.js";
 import { Eye } from "./eye.js";
+import { Ruler } from "./measure.js";
 import { setUpPublishing } from "./publish.js";
 
 const byId = id => document.getElementById(id);
@@ -16,6 +17,7 @@ const HINTS = {
   rest: "Draw over what is not in the part, then press Find part.",
 };
 
+let ruler = new Ruler(), picks = []; // picks: what each answer that is still to come is for
 let tool = "look", take = false, through = false, openedId = "", parts = [];
 let kept = [], stroke = null; // strokes that wait for Find part; the one being drawn
 let pen = null;               // where the keyboard's pen is, [x, y] in the picture's pixels; null: put away
@@ -63,8 +65,11 @@ function onText(message) {
     }
     showParts();
     break;
-  case "point": if (message.at) eye.lookAt(message.at); break;
-  case "error": tell(message.message); break;
+  case "point": picked(message.at); break;
+  case "error":
+    picks = [];
+    tell(message.message);
+    break;
   }
 }
 
@@ -78,7 +83,25 @@ function begin(message) {
   byId("name").textContent = message.name;
   document.title = `${message.name} – Gopura curator`;
   byId("language").replaceChildren(...message.languages.map(code => new Option(code, code)));
+  ruler = new Ruler(message.error);
   eye.begin(message);
+}
+
+// ---- places on the model: what is looked at, or measured
+
+function pick(purpose, at) {
+  picks.push(purpose);
+  send({ type: "pick", view: eye.sharpView, points: at });
+}
+
+function picked(at) {
+  const purpose = picks.shift();
+  if (purpose === "look" && at) eye.lookAt(at);
+  if (purpose !== "measure") return;
+  if (at) ruler.add(at, 0.5 * Math.hypot(...eye.position.map((c, i) => c - at[i])) / eye.pixelsPerRadian);
+  else tell("There is nothing: click on the model.");
+  showHint();
+  drawStrokes();
 }
 
 function moved() {
@@ -107,6 +130,7 @@ function drawStrokes() {
     ink.stroke();
   }
   ink.globalAlpha = 1;
+  if (tool === "measure") ruler.draw(ink, point => eye.pixelOf(point));
   if (pen) drawPen(ink);
 }
 
@@ -153,8 +177,17 @@ function startStroke(at) {
     return;
   }
   tell("");
+  if (tool === "measure") {
+    pick("measure", at);
+    return;
+  }
   stroke = { tool, take, points: [...at] };
   drawStrokes();
+}
+
+function showHint() {
+  const pens = tool === "measure" ? "Space measures there" : "Space lowers and lifts it", measured = tool === "measure" ? ruler.text() : "";
+  byId("hint").textContent = pen ? `${measured} Pen: arrow keys move it, ${pens}, Escape puts it away.` : measured || HINTS[tool];
 }
 
 // ---- the keyboard's pen
@@ -164,7 +197,7 @@ const PEN_KEYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], Arr
 function takePen(taken) {
   pen = taken ? [strokes.width / 2, strokes.height / 2] : null;
   stroke = null;
-  byId("hint").textContent = pen ? "Pen: arrow keys move it, Space lowers and lifts it, Escape puts it away." : HINTS[tool];
+  showHint();
   drawStrokes();
 }
 
@@ -183,7 +216,7 @@ function penKey(key, fine) {
 }
 
 stage.addEventListener("dblclick", event => {
-  if (tool === "look" && eye.sharpView >= 0) send({ type: "pick", view: eye.sharpView, points: pixelOf(event) });
+  if (tool === "look" && eye.sharpView >= 0) pick("look", pixelOf(event));
 });
 
 // ---- buttons
@@ -252,7 +285,7 @@ function showParts() {
     const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
     button.type = "button";
     button.textContent = part.title || part.id;
-    small.textContent = part.faces ? part.id : "a shape, not marked";
+    small.textContent = part.faces ? part.id : "a box or ball so far, not marked";
     button.disabled = !part.faces;
     button.setAttribute("aria-current", String(part.id === openedId));
     button.append(small);
@@ -308,7 +341,7 @@ document.addEventListener("keydown", event => {
   else if (control) done = false;
   else if (TURN_KEYS[key] && document.activeElement === stage) event.shiftKey ? eye.pan(...TURN_KEYS[key]) : eye.turn(...TURN_KEYS[key]);
   else if (key === "p" && tool !== "look") { stage.focus(); takePen(true); }
-  else if (key >= "1" && key <= "5") chooseTool(Number(key) - 1);
+  else if (key >= "1" && key <= "6") chooseTool(Number(key) - 1);
   else if (key === "a" || key === "t") chooseSign(key === "t" ? 1 : 0);
   else if (key === "s" || key === "d") chooseDepth(key === "d" ? 1 : 0);
   else if (key === "Enter" && region.marks && document.activeElement === stage) apply();

@@ -73,6 +73,23 @@ export class Eye {
     this.lookFrom(this.position, point);
   }
 
+  // How many pixels of the picture a metre covers at a metre from the eye.
+  get pixelsPerRadian() {
+    return this.canvases[0].height / (2 * Math.tan(FOV_DEG * Math.PI / 360));
+  }
+
+  // Where a point is in the picture, in its pixels; null: behind the eye.
+  pixelOf(point) {
+    const { yaw, pitch } = this.camera, eye = this.position, d = point.map((c, i) => c - eye[i]);
+    const back = [Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch)];
+    const up = [-Math.sin(pitch) * Math.cos(yaw), -Math.sin(pitch) * Math.sin(yaw), Math.cos(pitch)];
+    const dot = axis => axis.reduce((sum, c, i) => sum + c * d[i], 0);
+    const far = -dot(back), [{ width, height }] = this.canvases;
+    if (far <= 0) return null;
+    const scale = this.pixelsPerRadian / far;
+    return [width / 2 + scale * (Math.cos(yaw) * d[1] - Math.sin(yaw) * d[0]), height / 2 - scale * dot(up)];
+  }
+
   sendCamera(moving) {
     const [picture] = this.canvases;
     this.view++;

@@ -30,20 +30,40 @@ async function draw(points) {
 // Pixels of the picture as blue as what is marked.
 const blue = `(() => { const c = document.querySelector("#picture"), d = c.getContext("2d").getImageData(0, 0, c.width, c.height).data; let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i + 2] > d[i] + 20; return n; })()`;
 
+// Two places of the gallery, and the same length from another side.
+async function measure() {
+  const text = `document.querySelector("#hint").textContent`;
+  await browser.key("6", 0, 54);
+  await browser.until(`${text} === "Click two places on the model."`, "the ruler");
+  await draw([[-0.1, 0]]);
+  await browser.until(`${text} === "Click the second place."`, "the first end");
+  await draw([[0.1, 0]]);
+  await browser.until(`/^\\d[\\d.]* (m|cm) ± \\d+ (cm|mm), without the scan's own error/.test(${text})`, "a length");
+  const length = await browser.evaluate(text);
+  await browser.evaluate(`document.querySelector("#stage").focus()`);
+  await browser.key("ArrowLeft", 0, 37);
+  await browser.until(`document.querySelector("#quality").hidden`, "the sharp picture from another side");
+  assert.equal(await browser.evaluate(text), length);
+  await browser.picture(`${folder}/2-measured.png`);
+  await browser.key("ArrowRight", 0, 39);
+  await browser.until(`document.querySelector("#quality").hidden`, "the sharp picture");
+  console.log(length);
+}
+
 async function mark() {
   await browser.key("4", 0, 52);
   await draw(Array.from({ length: 20 }, (_, n) => [-0.1 + n * 0.01, 0.03 * Math.sin(n)]));
   await browser.key("5", 0, 53);
   await draw(Array.from({ length: 41 }, (_, n) => [0.3 * Math.cos(n * Math.PI / 20), 0.3 * Math.sin(n * Math.PI / 20)]));
   await browser.until(`!document.querySelector("#apply").disabled`, "strokes");
-  await browser.picture(`${folder}/2-strokes.png`);
+  await browser.picture(`${folder}/3-strokes.png`);
   const before = await browser.evaluate(blue);
   await browser.click("#apply");
   await browser.until(`Number(document.querySelector("#count").textContent.replace(/\\D/g, "")) > 50`, "a region");
   await browser.until(`${blue} > ${before + 500}`, "the region in the picture");
   await browser.evaluate(`document.querySelector("#title").focus()`);
   await browser.type("Corner of the gallery");
-  await browser.picture(`${folder}/3-marked.png`);
+  await browser.picture(`${folder}/4-marked.png`);
   await browser.click("#save");
   await browser.until(`document.querySelector("#message a")`, "the saved part");
 }
@@ -59,7 +79,7 @@ async function write() {
   await browser.until(`document.querySelector("#save").disabled && /Saved/.test(document.querySelector("#state").textContent)`, "saving");
   await browser.click("#tab-preview");
   await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 3`, "three previews");
-  await browser.picture(`${folder}/4-written.png`);
+  await browser.picture(`${folder}/5-written.png`);
 }
 
 async function publish() {
@@ -68,7 +88,7 @@ async function publish() {
   assert.match(await browser.evaluate(`document.querySelector("#changes").textContent`), /Corner of the gallery/);
   await browser.click("#publish-comment");
   await browser.type("Corner of the gallery");
-  await browser.picture(`${folder}/5-publish.png`);
+  await browser.picture(`${folder}/6-publish.png`);
   await browser.click("#publish-now");
   await browser.until(`document.querySelector("#publish-state").className.includes("good")`, "the release", 100000);
 }
@@ -77,6 +97,7 @@ try {
   await signIn();
   if (what === "publish") await publish();
   else {
+    await measure();
     await mark();
     await write();
   }

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/../.."
 command -v chromium >/dev/null || skip "chromium is not installed"
 command -v node >/dev/null || skip "node is not installed"
 work=build/e2e/curating pictures=build/curator
-rm -rf "$work" "$pictures"/[1-6]-*.png
+rm -rf "$work" "$pictures"/[1-7]-*.png
 mkdir -p "$work" "$pictures"
 small_release
 cp -a "$small/"{content,release,keys} "$work/" # with the times of its scan, so the hierarchy is still its own
@@ -49,7 +49,7 @@ echo "tapped after $SECONDS s"
 picture() { [ "$(ls "$work"/shots/*.png 2>/dev/null | wc -l)" -ge "$(grep -c 'app: card of' "$work/kiosk.log")" ]; }
 wait_for 20 "picture of the card" picture
 sleep 1 # until the last one is written
-cp "$(ls -t "$work"/shots/*.png | head -n 1)" "$pictures/6-card.png"
+cp "$(ls -t "$work"/shots/*.png | head -n 1)" "$pictures/7-card.png"
 kill "$kiosk"
 wait "$kiosk" || fail "the kiosk did not end well"
 kiosk=
