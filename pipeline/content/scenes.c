@@ -177,26 +177,46 @@ static bool read_place(struct reading *r, const cJSON *json, unsigned line, uint
 	return false;
 }
 
+/* Sets what a scene says of a glTF file. Returns false after a fault. */
+static bool read_choice(struct reading *r, const cJSON *json, unsigned line,
+			struct import_scene *scene)
+{
+	const cJSON *plays = cJSON_GetObjectItemCaseSensitive(json, "plays");
+	const char *how = cJSON_GetStringValue(plays);
+
+	*scene = (struct import_scene){ .name = text_of(json, "scene"),
+					.plays_always = how && strcmp(how, "always") == 0,
+					.says_how = plays };
+	if (!plays || (how && (scene->plays_always || strcmp(how, "touch") == 0)))
+		return true;
+	fault(r, line,
+	      "\"plays\" must be \"touch\", when a visitor touches what moves, or \"always\"");
+	return false;
+}
+
 static int read_scene(struct reading *r, const cJSON *json)
 {
 	const unsigned line = json_text_line(&r->json, json);
 	const char *name = text_of(json, "file");
 	char path[CONTENT_PATH_BYTES];
 	struct import_options options;
+	struct import_scene scene;
 	uint32_t layer;
 	int rc;
 
 	if (!cJSON_IsObject(json) || !name)
 		return fault(r, line, "a scene is {\"file\": \"scenes/door.wrl\"}");
-	check_keys(r, json, " file layer up unit ");
+	check_keys(r, json, " file layer up unit scene plays ");
 	if (strncmp(name, "scenes/", 7) != 0 || strchr(name + 7, '/') ||
 	    content_file_path(r->content, name, path) < 0)
-		return fault(r, line, "\"file\" must be in the folder scenes: \"scenes/NAME.wrl\"");
-	if (!read_place(r, json, line, &layer, &options))
+		return fault(r, line,
+			     "\"file\" must be in the folder scenes: \"scenes/NAME.wrl\" or .glb");
+	if (!read_place(r, json, line, &layer, &options) || !read_choice(r, json, line, &scene))
 		return 0;
 	if (layer != SCENERY_NONE)
 		r->layer_uses[layer]++;
-	rc = import_scenery(&r->maker, path, layer, &options, r->diagnostics, r->diagnostics);
+	rc = import_scenery(&r->maker, path, layer, &options, &scene, r->diagnostics,
+			    r->diagnostics);
 	return rc == -ENOMEM ? rc : 0;
 }
 

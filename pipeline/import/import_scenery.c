@@ -1,4 +1,4 @@
-/* Reads VRML97 files as scenery, and the views in them. */
+/* Reads VRML97 and glTF files as scenery, and the views in VRML97 files. */
 #include "pipeline/import/import_scenery.h"
 
 #include <errno.h>
@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include "geometry/vec.h"
+#include "pipeline/import/gltf_extensions.h"
 #include "pipeline/import/import_files.h"
+#include "pipeline/scene/gltf_scenery.h"
 #include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_text.h"
 #include "pipeline/scene/vrml_views.h"
@@ -18,29 +20,55 @@ static int open_file(void *data, const char *name)
 	return import_files_open(data, name);
 }
 
-static int read_scene(struct vrml **out, const char *path, struct diagnostics *diagnostics,
-		      struct diagnostics *warnings)
-{
-	struct import_files files = { .scan_path = path };
-	const struct vrml_options options = { .open_file = open_file, .data = &files };
-	struct buffer file;
-	int rc;
+/* A scene's file, whose bytes were read, in the folder of the files that it names. */
+struct scene_file {
+	const char *path;
+	struct import_files files;
+	struct buffer bytes;
+	enum scan_format format;
+};
 
-	files.folder_fd = import_files_open_folder(path);
-	if (files.folder_fd < 0)
-		return diagnostics_add(diagnostics, files.folder_fd, path, 0, "%s",
-				       strerror(-files.folder_fd));
-	buffer_init(&file, VRML_TEXT_BYTES_MAX);
-	rc = buffer_read_file(&file, path);
+static int open_scene(struct scene_file *out, const char *path, struct diagnostics *diagnostics)
+{
+	uint64_t bytes;
+	int rc = import_detect(&out->format, &bytes, path, diagnostics);
+
+	*out = (struct scene_file){ .path = path,
+				    .files = { .scan_path = path, .folder_fd = -1 },
+				    .format = out->format };
+	buffer_init(&out->bytes, VRML_TEXT_BYTES_MAX);
 	if (rc < 0)
-		rc = diagnostics_add(diagnostics, rc, path, 0, "%s",
-				     rc == -EFBIG ? "too large; split it into several files"
-						  : strerror(-rc));
-	else
-		rc = vrml_read(out, buffer_bytes(&file), path, &options, diagnostics, warnings);
-	buffer_finish(&file);
-	close(files.folder_fd);
-	return rc;
+		return rc;
+	if (out->format != SCAN_VRML && out->format != SCAN_GLTF && out->format != SCAN_GLB)
+		return diagnostics_add(diagnostics, -EINVAL, path, 0,
+				       "scenes are VRML97 (.wrl, .wrz) or glTF (.glb, .gltf); "
+				       "export it as one of these");
+	out->files.folder_fd = import_files_open_folder(path);
+	if (out->files.folder_fd < 0)
+		return diagnostics_add(diagnostics, out->files.folder_fd, path, 0, "%s",
+				       strerror(-out->files.folder_fd));
+	rc = buffer_read_file(&out->bytes, path);
+	if (rc < 0)
+		return diagnostics_add(diagnostics, rc, path, 0, "%s",
+				       rc == -EFBIG ? "too large; split it into several files"
+						    : strerror(-rc));
+	return 0;
+}
+
+static void close_scene(struct scene_file *file)
+{
+	if (file->files.folder_fd >= 0)
+		close(file->files.folder_fd);
+	buffer_finish(&file->bytes);
+}
+
+static int read_vrml(struct vrml **out, struct scene_file *file, struct diagnostics *diagnostics,
+		     struct diagnostics *warnings)
+{
+	const struct vrml_options options = { .open_file = open_file, .data = &file->files };
+
+	return vrml_read(out, buffer_bytes(&file->bytes), file->path, &options, diagnostics,
+			 warnings);
 }
 
 /* The node that turns the file's axes to z up, and its unit to metres. */
@@ -61,36 +89,60 @@ static struct scenery_node node_of(uint32_t layer, const struct import_options *
 	return node;
 }
 
-/* Reads the file if it is of a format that scenes have. */
-static int read_file(struct vrml **out, const char *path, struct diagnostics *diagnostics,
-		     struct diagnostics *warnings)
+static int add_vrml(struct scenery_maker *maker, struct scene_file *file, uint32_t node,
+		    const struct import_scene *which, struct diagnostics *diagnostics,
+		    struct diagnostics *warnings)
 {
-	enum scan_format format;
-	uint64_t bytes;
-	int rc = import_detect(&format, &bytes, path, diagnostics);
+	struct vrml *scene;
+	int rc;
 
-	*out = NULL;
-	if (rc == 0 && format != SCAN_VRML)
-		rc = diagnostics_add(diagnostics, -EINVAL, path, 0,
-				     "scenes are VRML97 (.wrl, .wrz); export it as that");
-	return rc < 0 ? rc : read_scene(out, path, diagnostics, warnings);
+	if (which->name || which->says_how)
+		return diagnostics_add(
+			diagnostics, -EINVAL, file->path, 0,
+			"a VRML97 file has one scene and says itself what moves when; "
+			"remove \"scene\" and \"plays\" from scenes.json");
+	rc = read_vrml(&scene, file, diagnostics, warnings);
+	if (rc == 0)
+		rc = vrml_scenery_add(maker, scene, node, diagnostics, warnings);
+	vrml_destroy(scene);
+	return rc;
+}
+
+static int add_gltf(struct scenery_maker *maker, struct scene_file *file, uint32_t node,
+		    const struct import_scene *which, struct diagnostics *diagnostics,
+		    struct diagnostics *warnings)
+{
+	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
+	const struct gltf_choice choice = { .scene = which->name,
+					    .plays_always = which->plays_always };
+	struct gltf gltf = { 0 };
+	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+
+	if (rc == 0)
+		rc = gltf_read(&gltf, buffer_bytes(&file->bytes), file->path, &options,
+			       diagnostics);
+	if (rc == 0)
+		rc = gltf_scenery_add(maker, &gltf, node, &choice, warnings);
+	gltf_finish(&gltf);
+	return rc;
 }
 
 int import_scenery(struct scenery_maker *maker, const char *path, uint32_t layer,
-		   const struct import_options *options, struct diagnostics *diagnostics,
-		   struct diagnostics *warnings)
+		   const struct import_options *options, const struct import_scene *scene,
+		   struct diagnostics *diagnostics, struct diagnostics *warnings)
 {
 	const struct scenery_node node = node_of(layer, options);
-	struct vrml *scene;
-	uint32_t number;
-	int rc = read_file(&scene, path, diagnostics, warnings);
+	struct scene_file file;
+	uint32_t number = 0;
+	int rc = open_scene(&file, path, diagnostics);
 
 	if (rc == 0 && scenery_add_node(maker, &node, &number) < 0)
 		rc = diagnostics_add(diagnostics, -EFBIG, path, 0, "over %d nodes in all scenes",
 				     SCENERY_NODES_MAX);
 	if (rc == 0)
-		rc = vrml_scenery_add(maker, scene, number, diagnostics, warnings);
-	vrml_destroy(scene);
+		rc = (file.format == SCAN_VRML ? add_vrml : add_gltf)(maker, &file, number, scene,
+								      diagnostics, warnings);
+	close_scene(&file);
 	return rc;
 }
 
@@ -150,10 +202,17 @@ int import_scenery_views(struct import_views *out, const char *path, const char 
 {
 	struct diagnostics warnings = { 0 }; /* import_scenery gives them */
 	struct vrml_views views = { 0 };
-	struct vrml *scene;
-	int rc = read_file(&scene, path, diagnostics, &warnings);
+	struct vrml *scene = NULL;
+	struct scene_file file;
+	int rc = open_scene(&file, path, diagnostics);
 
 	*out = (struct import_views){ 0 };
+	if (rc == 0 && file.format != SCAN_VRML)
+		rc = diagnostics_add(diagnostics, -EINVAL, path, 0,
+				     "only Viewpoints of VRML97 files become tours; save its "
+				     "camera as one");
+	if (rc == 0)
+		rc = read_vrml(&scene, &file, diagnostics, &warnings);
 	if (rc == 0)
 		rc = vrml_views_read(&views, scene, description, diagnostics);
 	if (rc == 0)
@@ -164,6 +223,7 @@ int import_scenery_views(struct import_views *out, const char *path, const char 
 	}
 	vrml_views_finish(&views);
 	vrml_destroy(scene);
+	close_scene(&file);
 	diagnostics_finish(&warnings);
 	return rc;
 }

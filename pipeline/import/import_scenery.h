@@ -5,11 +5,19 @@
 #include "pipeline/import/import.h"
 #include "pipeline/scene/scenery_maker.h"
 
+/* What is taken of a glTF file. Zeroed is the scene that it shows first, moving when touched. */
+struct import_scene {
+	const char *name;  /* of one of its scenes; NULL: the first shown */
+	bool plays_always; /* its animations run always; else when what they move is touched */
+	bool says_how;     /* it was said which; a VRML97 file says so itself */
+};
+
 /* Adds the file at path below a new node of the layer, or of none (SCENERY_NONE). Axes and unit are
  * those of options. What is left out is a diagnostic in warnings. Returns a negative errno with a
  * diagnostic that names file, place and cure. */
 must_check int import_scenery(struct scenery_maker *maker, const char *path, uint32_t layer,
-			      const struct import_options *options, struct diagnostics *diagnostics,
+			      const struct import_options *options,
+			      const struct import_scene *scene, struct diagnostics *diagnostics,
 			      struct diagnostics *warnings);
 
 /* A view of a scene, in metres with z up. */

@@ -152,6 +152,48 @@ int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motio
 	return rc;
 }
 
+/* ---- motions that return */
+
+static bool is_set_by_another(const struct scenery *scenery, uint32_t motion,
+			      const struct scenery_track *track)
+{
+	const struct scenery_motion *own = &scenery->motions[motion];
+
+	for (uint32_t t = 0; t < scenery->track_count; t++)
+		if ((t < own->first_track || t >= own->first_track + own->track_count) &&
+		    scenery->tracks[t].node == track->node &&
+		    scenery->tracks[t].target == track->target)
+			return true;
+	return false;
+}
+
+void scenery_find_returns(struct scenery_maker *maker, uint32_t first)
+{
+	struct scenery *scenery = &maker->out;
+
+	for (uint32_t m = first; m < scenery->motion_count; m++) {
+		struct scenery_motion *motion = &scenery->motions[m];
+		bool ends_elsewhere = false, is_alone = true;
+
+		for (uint32_t t = 0; t < motion->track_count; t++) {
+			const struct scenery_track *track =
+				&scenery->tracks[motion->first_track + t];
+			const uint32_t width = scenery_width(track->target);
+			const float *values = &scenery->numbers[track->first + track->key_count];
+
+			is_alone = is_alone && !is_set_by_another(scenery, m, track);
+			for (uint32_t k = 0; k < width; k++)
+				ends_elsewhere =
+					ends_elsewhere ||
+					fabsf(values[k] -
+					      values[(track->key_count - 1) * width + k]) > 1e-4f;
+		}
+		motion->returns = !motion->loops && is_alone && ends_elsewhere;
+	}
+}
+
+/* ---- the end */
+
 int scenery_maker_end(struct scenery_maker *maker, struct scenery *out)
 {
 	int rc = 0;

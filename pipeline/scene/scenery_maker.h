@@ -46,6 +46,11 @@ must_check int scenery_add_track(struct scenery_maker *maker, uint32_t node,
 				 float **values);
 must_check int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motion);
 
+/* A motion that ends elsewhere than it began would jump when it is touched again, and no format
+ * says without a program that a door closes. So each motion from `first` on that is touched runs
+ * backwards at the next touch, unless another motion is there for it. */
+void scenery_find_returns(struct scenery_maker *maker, uint32_t first);
+
 /* Makes the meshes; *out is the caller's, and the maker is empty. */
 must_check int scenery_maker_end(struct scenery_maker *maker, struct scenery *out);
 void scenery_maker_finish(struct scenery_maker *maker); /* NULL is fine */

@@ -243,47 +243,6 @@ static int follow_timer(const struct follow *follow, const struct vrml_node *tim
 	return 0;
 }
 
-/* ---- motions that return */
-
-static bool is_set_by_another(const struct scenery *scenery, uint32_t motion,
-			      const struct scenery_track *track)
-{
-	const struct scenery_motion *own = &scenery->motions[motion];
-
-	for (uint32_t t = 0; t < scenery->track_count; t++)
-		if ((t < own->first_track || t >= own->first_track + own->track_count) &&
-		    scenery->tracks[t].node == track->node &&
-		    scenery->tracks[t].target == track->target)
-			return true;
-	return false;
-}
-
-/* A motion that ends elsewhere than it began would jump when it is touched again, and VRML without
- * programs cannot say that a door closes. So it runs backwards, unless another motion is there for
- * it. */
-static void find_returns(struct scenery *scenery, uint32_t first)
-{
-	for (uint32_t m = first; m < scenery->motion_count; m++) {
-		struct scenery_motion *motion = &scenery->motions[m];
-		bool ends_elsewhere = false, is_alone = true;
-
-		for (uint32_t t = 0; t < motion->track_count; t++) {
-			const struct scenery_track *track =
-				&scenery->tracks[motion->first_track + t];
-			const uint32_t width = scenery_width(track->target);
-			const float *values = &scenery->numbers[track->first + track->key_count];
-
-			is_alone = is_alone && !is_set_by_another(scenery, m, track);
-			for (uint32_t k = 0; k < width; k++)
-				ends_elsewhere =
-					ends_elsewhere ||
-					fabsf(values[k] -
-					      values[(track->key_count - 1) * width + k]) > 1e-4f;
-		}
-		motion->returns = !motion->loops && is_alone && ends_elsewhere;
-	}
-}
-
 /* ---- all */
 
 static bool was_followed(const struct follow *follow, uint32_t route)
@@ -308,7 +267,7 @@ static int follow_all(const struct follow *follow)
 		    !was_followed(follow, r))
 			rc = follow_timer(follow, from);
 	}
-	find_returns(&follow->maker->out, first);
+	scenery_find_returns(follow->maker, first);
 	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
 		if (!follow->used[r])
 			diagnostics_add(follow->warnings, 0, follow->routes[r]->file,

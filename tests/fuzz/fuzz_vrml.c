@@ -71,11 +71,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	options.data = (void *)scratch_path("other.wrl");
 	rc = vrml_read(&scene, (struct bytes){ data, size }, "a.wrl", &options, &diagnostics,
 		       &warnings);
-	if (rc == 0)
-		read_views(scene, &diagnostics);
-	diagnostics_finish(&diagnostics);
-	diagnostics = (struct diagnostics){ 0 };
 	if (rc == 0) {
+		struct diagnostics of_views = { 0 };
+
+		read_views(scene, &of_views);
 		rc = vrml_surface_make(&surface, scene, &diagnostics);
 		if (rc == 0) {
 			check(&surface);

@@ -103,6 +103,10 @@ static void every_fault_names_its_line(void **state)
 		  "scenes.json:3: a layer has no title in \"en\", the first language: add \"title\": "
 		  "{\"en\": \"...\"}" },
 		{ "{\"scenes\": [{\"file\": \"scenes/bad.wrl\"}]}", "bad.wrl:3: Script" },
+		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"plays\": \"twice\"}]}",
+		  "scenes.json:2: \"plays\" must be \"touch\"" },
+		{ "{\"scenes\": [{\"file\": \"scenes/box.wrl\", \"plays\": \"always\"}]}",
+		  "box.wrl: a VRML97 file has one scene and says itself what moves when" },
 		{ "{\"scenes\": [{\"file\": \"scenes/none.wrl\"}]}",
 		  "none.wrl: No such file or directory" },
 	};

@@ -1,0 +1,496 @@
+/* Walks the nodes of a glTF scene (glTF 2.0, 3.5 to 3.9). */
+#include "pipeline/scene/gltf_scenery.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+#include "pipeline/scene/gltf_motions.h"
+#include "pipeline/scene/vrml_graph.h"
+
+enum { TRIANGLES = 4, STRIP = 5, FAN = 6, DEPTH_MAX = 200 };
+
+struct walk {
+	struct scenery_maker *maker;
+	const struct gltf *gltf;
+	struct diagnostics *warnings;
+	bool *moves, *was_seen; /* by node of the file */
+	uint32_t *nodes;        /* of the scenery */
+	uint32_t depth;
+	bool has_pictures, has_other_shapes;
+};
+
+static const char *name_of(const cJSON *object)
+{
+	const char *name = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, "name"));
+
+	return name ? name : "";
+}
+
+static int fail(const struct walk *walk, int rc, const cJSON *object)
+{
+	if (rc == -EFBIG)
+		gltf_say(walk->gltf, rc, object,
+			 "more than scenery may have; simplify the scene, or use it as a scan");
+	else if (rc == -ENOMEM)
+		gltf_say(walk->gltf, rc, object, "too large for this machine's memory");
+	return rc;
+}
+
+/* Reads an array of numbers; otherwise holds if it is not there. Returns false if it is faulty. */
+static bool get_floats(float *out, const cJSON *object, const char *field, int count,
+		       const float *otherwise)
+{
+	const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, field), *item;
+	int at = 0;
+
+	memcpy(out, otherwise, (size_t)count * sizeof(*out));
+	if (!array)
+		return true;
+	if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != count)
+		return false;
+	cJSON_ArrayForEach(item, array)
+	{
+		out[at] = cJSON_IsNumber(item) ? (float)item->valuedouble : NAN;
+		if (!isfinite(out[at++]))
+			return false;
+	}
+	return true;
+}
+
+/* ---- places */
+
+/* Sets a turn to that of a matrix whose columns are at right angles and of length 1. */
+static void turn_of(float out[4], const float m[16])
+{
+	const float squares[4] = { 1 + m[0] - m[5] - m[10], 1 - m[0] + m[5] - m[10],
+				   1 - m[0] - m[5] + m[10], 1 + m[0] + m[5] + m[10] };
+	int most = 0;
+	float half, scale;
+
+	for (int k = 1; k < 4; k++)
+		if (squares[k] > squares[most])
+			most = k;
+	half = sqrtf(fmaxf(squares[most], 0)) / 2;
+	scale = half > 0 ? 0.25f / half : 0;
+	out[most] = half;
+	if (most == 3) {
+		out[0] = (m[6] - m[9]) * scale;
+		out[1] = (m[8] - m[2]) * scale;
+		out[2] = (m[1] - m[4]) * scale;
+	} else {
+		const int next = (most + 1) % 3, last = (most + 2) % 3;
+
+		out[next] = (m[4 * next + most] + m[4 * most + next]) * scale;
+		out[last] = (m[4 * last + most] + m[4 * most + last]) * scale;
+		out[3] = (m[4 * next + last] - m[4 * last + next]) * scale;
+	}
+}
+
+/* Splits a matrix into the move, turn and scale that it must be made of. */
+static void split_matrix(struct scenery_place *out, float m[16])
+{
+	memcpy(out->move_m, m + 12, sizeof(out->move_m));
+	for (int column = 0; column < 3; column++) {
+		out->scale[column] = vec_length(m + 4 * column);
+		if (column == 0 && vrml_mirrors(m))
+			out->scale[0] *= -1;
+		for (int row = 0; row < 3 && out->scale[column] != 0; row++)
+			m[4 * column + row] /= out->scale[column];
+	}
+	turn_of(out->turn, m);
+}
+
+static int get_place(const struct walk *walk, struct scenery_place *out, const cJSON *node)
+{
+	static const float zero[3], one[3] = { 1, 1, 1 }, none[4] = { 0, 0, 0, 1 };
+	float m[16], length = 0;
+	bool is_good;
+
+	*out = scenery_at_rest;
+	is_good = get_floats(m, node, "matrix", 16, vrml_identity) &&
+		  get_floats(out->move_m, node, "translation", 3, zero) &&
+		  get_floats(out->turn, node, "rotation", 4, none) &&
+		  get_floats(out->scale, node, "scale", 3, one);
+	if (is_good && cJSON_HasObjectItem(node, "matrix"))
+		split_matrix(out, m);
+	for (int k = 0; k < 4; k++)
+		length += out->turn[k] * out->turn[k];
+	if (!is_good || !(length > 1e-6f && isfinite(length)))
+		return gltf_say(walk->gltf, -EBADMSG, node,
+				"node \"%.60s\" has a place that is none; export it anew",
+				name_of(node));
+	for (int k = 0; k < 4; k++)
+		out->turn[k] /= sqrtf(length);
+	return 0;
+}
+
+static void multiply(float out[16], const float parent[16], const struct scenery_place *place)
+{
+	const float *q = place->turn;
+	float own[16] = { 1 - 2 * (q[1] * q[1] + q[2] * q[2]),
+			  2 * (q[0] * q[1] + q[2] * q[3]),
+			  2 * (q[0] * q[2] - q[1] * q[3]),
+			  0,
+			  2 * (q[0] * q[1] - q[2] * q[3]),
+			  1 - 2 * (q[0] * q[0] + q[2] * q[2]),
+			  2 * (q[1] * q[2] + q[0] * q[3]),
+			  0,
+			  2 * (q[0] * q[2] + q[1] * q[3]),
+			  2 * (q[1] * q[2] - q[0] * q[3]),
+			  1 - 2 * (q[0] * q[0] + q[1] * q[1]),
+			  0,
+			  place->move_m[0],
+			  place->move_m[1],
+			  place->move_m[2],
+			  1 };
+
+	for (int i = 0; i < 12; i++)
+		own[i] *= place->scale[i / 4];
+	matrix_multiply(out, parent, own);
+}
+
+/* ---- meshes */
+
+static float to_srgb(float linear)
+{
+	linear = fminf(fmaxf(linear, 0), 1);
+	return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+}
+
+struct look {
+	float factor[4]; /* baseColorFactor, linear */
+	struct scenery_material material;
+};
+
+static uint8_t to_byte(float linear)
+{
+	return (uint8_t)(to_srgb(linear) * 255 + 0.5f);
+}
+
+static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
+{
+	static const float white[4] = { 1, 1, 1, 1 }, black[3];
+	const cJSON *material = gltf_item(walk->gltf, GLTF_MATERIALS, primitive, "material", NULL);
+	const cJSON *pbr = cJSON_GetObjectItemCaseSensitive(material, "pbrMetallicRoughness");
+	const char *alpha =
+		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(material, "alphaMode"));
+	float emissive[3];
+
+	out->material = scenery_plain;
+	out->material.has_two_sides =
+		cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(material, "doubleSided"));
+	if (!get_floats(out->factor, pbr, "baseColorFactor", 4, white) ||
+	    !get_floats(emissive, material, "emissiveFactor", 3, black))
+		return gltf_say(walk->gltf, -EBADMSG, material,
+				"material \"%.60s\" has a colour that is none; export it anew",
+				name_of(material));
+	for (int k = 0; k < 3; k++)
+		out->material.emissive[k] = to_byte(emissive[k]);
+	if (alpha && strcmp(alpha, "BLEND") == 0)
+		out->material.opacity = fminf(fmaxf(out->factor[3], 0), 1);
+	walk->has_pictures |= cJSON_HasObjectItem(pbr, "baseColorTexture");
+	return 0;
+}
+
+struct shape {
+	struct gltf_numbers positions, colours, indices;
+	bool has_colours, has_indices, has_normals;
+	struct look look;
+	int mode;
+	uint32_t count; /* of corners in order */
+};
+
+static int read_shape(struct walk *walk, struct shape *out, const cJSON *primitive)
+{
+	const struct gltf *gltf = walk->gltf;
+	const cJSON *attributes = cJSON_GetObjectItemCaseSensitive(primitive, "attributes");
+	const cJSON *mode = cJSON_GetObjectItemCaseSensitive(primitive, "mode");
+	const cJSON *colours, *type;
+	int rc;
+
+	*out = (struct shape){ .mode = mode ? mode->valueint : TRIANGLES };
+	if (cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(primitive, "targets")) > 0)
+		return gltf_say(gltf, -ENOTSUP, primitive,
+				"a mesh has morph targets, which scenery does not have; export it "
+				"without shape keys");
+	rc = gltf_numbers_of(&out->positions, gltf, attributes, "POSITION", 3);
+	if (rc < 0)
+		return rc;
+	colours = gltf_item(gltf, GLTF_ACCESSORS, attributes, "COLOR_0", NULL);
+	type = cJSON_GetObjectItemCaseSensitive(colours, "type");
+	out->has_colours = colours;
+	if (colours)
+		rc = gltf_numbers_of(
+			&out->colours, gltf, attributes, "COLOR_0",
+			type && type->valuestring && strcmp(type->valuestring, "VEC3") == 0 ? 3
+											    : 4);
+	out->has_indices = cJSON_HasObjectItem(primitive, "indices");
+	if (rc == 0 && out->has_indices)
+		rc = gltf_numbers_of(&out->indices, gltf, primitive, "indices", 1);
+	if (rc < 0)
+		return rc;
+	out->has_normals = cJSON_HasObjectItem(attributes, "NORMAL");
+	out->count = out->has_indices ? out->indices.count : out->positions.count;
+	return get_look(walk, &out->look, primitive);
+}
+
+static bool set_corner(struct soup_corner *out, const struct shape *shape, uint32_t at)
+{
+	const uint32_t vertex = shape->has_indices ? gltf_index(&shape->indices, at) : at;
+
+	*out = (struct soup_corner){ 0 };
+	if (vertex >= shape->positions.count ||
+	    (shape->has_colours && vertex >= shape->colours.count))
+		return false;
+	for (int k = 0; k < 3; k++) {
+		const float colour =
+			shape->has_colours ? gltf_number(&shape->colours, vertex, (uint32_t)k) : 1;
+
+		out->position[k] = gltf_number(&shape->positions, vertex, (uint32_t)k);
+		out->rgb[k] = to_byte(colour * shape->look.factor[k]);
+		if (!isfinite(out->position[k]))
+			return false;
+	}
+	return true;
+}
+
+/* Adds the triangles of a shape to the soup. -EBADMSG: an index or a place is none. */
+static int add_triangles(struct soup *soup, const struct shape *shape)
+{
+	const uint32_t step = shape->mode == TRIANGLES ? 3 : 1;
+	int rc = 0;
+
+	for (uint32_t i = 0; i + 3 <= shape->count && rc == 0; i += step) {
+		const bool is_odd = shape->mode == STRIP && i % 2;
+		struct soup_corner corners[3];
+
+		if (!set_corner(&corners[0], shape, shape->mode == FAN ? 0 : i) ||
+		    !set_corner(&corners[is_odd ? 2 : 1], shape, i + 1) ||
+		    !set_corner(&corners[is_odd ? 1 : 2], shape, i + 2))
+			return -EBADMSG;
+		rc = soup_add(soup, corners, 3);
+	}
+	return rc;
+}
+
+static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON *mesh,
+			 uint32_t node, const float place[16], bool is_mirrored)
+{
+	const float round = 1;
+	struct soup soup = { .texture = SOUP_NO_TEXTURE, .is_inside_out = is_mirrored };
+	struct shape shape;
+	int rc = read_shape(walk, &shape, primitive);
+
+	if (rc < 0)
+		return rc;
+	if (shape.mode != TRIANGLES && shape.mode != STRIP && shape.mode != FAN) {
+		walk->has_other_shapes = true;
+		return 0;
+	}
+	if (shape.look.material.opacity < 1.0f / 255)
+		return 0; /* it is not seen */
+	memcpy(soup.place, place, sizeof(soup.place));
+	rc = add_triangles(&soup, &shape);
+	if (rc == -EBADMSG)
+		gltf_say(walk->gltf, rc, primitive,
+			 "mesh \"%.60s\" has indices or places that are none; export it anew",
+			 name_of(mesh));
+	if (rc == 0)
+		rc = scenery_add_surface(walk->maker, node, &shape.look.material, soup.triangles,
+					 soup.count, shape.has_normals ? round : 0);
+	soup_finish(&soup);
+	return fail(walk, rc, mesh);
+}
+
+static int add_mesh(struct walk *walk, const cJSON *node, uint32_t number, const float place[16],
+		    bool is_mirrored)
+{
+	const cJSON *mesh = gltf_item(walk->gltf, GLTF_MESHES, node, "mesh", NULL);
+	const cJSON *primitives = cJSON_GetObjectItemCaseSensitive(mesh, "primitives"), *primitive;
+	int rc = 0;
+
+	if (mesh && cJSON_HasObjectItem(node, "skin"))
+		return gltf_say(walk->gltf, -ENOTSUP, node,
+				"node \"%.60s\" is bent by a skin, which scenery does not have; "
+				"export it as stiff parts on nodes that move",
+				name_of(node));
+	cJSON_ArrayForEach(primitive, primitives) if (rc == 0) rc =
+		add_primitive(walk, primitive, mesh, number, place, is_mirrored);
+	return rc;
+}
+
+/* ---- nodes */
+
+/* Returns a child of a node; NULL: it is no node. */
+static const cJSON *child_of(const struct walk *walk, const cJSON *item, uint32_t *number)
+{
+	const double at = cJSON_IsNumber(item) ? item->valuedouble : -1;
+
+	if (!(at >= 0 && at < (double)walk->gltf->lists[GLTF_NODES].count))
+		return NULL;
+	*number = (uint32_t)at;
+	return walk->gltf->lists[GLTF_NODES].items[*number];
+}
+
+/* Marks the nodes above what moves, and that each node is below one other at most. */
+static int mark(struct walk *walk, const cJSON *node, uint32_t number)
+{
+	const cJSON *children = cJSON_GetObjectItemCaseSensitive(node, "children"), *item;
+	int rc = 0;
+
+	if (walk->was_seen[number] || walk->depth == DEPTH_MAX)
+		return gltf_say(walk->gltf, -EBADMSG, node,
+				"node \"%.60s\" is below two nodes, or over %d deep; export it "
+				"anew",
+				name_of(node), DEPTH_MAX);
+	walk->was_seen[number] = true;
+	walk->depth++;
+	cJSON_ArrayForEach(item, children)
+	{
+		uint32_t child = 0;
+		const cJSON *of = child_of(walk, item, &child);
+
+		if (rc == 0 && !of)
+			rc = gltf_say(walk->gltf, -EBADMSG, node,
+				      "node \"%.60s\" has a child that is none; export it anew",
+				      name_of(node));
+		if (rc == 0)
+			rc = mark(walk, of, child);
+		if (rc == 0)
+			walk->moves[number] = walk->moves[number] || walk->moves[child];
+	}
+	walk->depth--;
+	return rc;
+}
+
+static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t node,
+		 const float parent[16], bool is_mirrored)
+{
+	const cJSON *children = cJSON_GetObjectItemCaseSensitive(of, "children"), *item;
+	struct scenery_node own = { .parent = node, .layer = SCENERY_NONE };
+	float place[16];
+	int rc = get_place(walk, &own.place, of);
+
+	if (rc < 0)
+		return rc;
+	is_mirrored ^= own.place.scale[0] * own.place.scale[1] * own.place.scale[2] < 0;
+	if (walk->moves[number]) {
+		memcpy(place, vrml_identity, sizeof(place));
+		rc = scenery_add_node(walk->maker, &own, &node);
+		walk->nodes[number] = node;
+	} else {
+		multiply(place, parent, &own.place);
+	}
+	if (rc < 0)
+		return fail(walk, rc, of);
+	rc = add_mesh(walk, of, node, place, is_mirrored);
+	cJSON_ArrayForEach(item, children)
+	{
+		uint32_t child = 0;
+		const cJSON *below = child_of(walk, item, &child);
+
+		if (rc == 0)
+			rc = visit(walk, below, child, node, place, is_mirrored);
+	}
+	return rc;
+}
+
+/* ---- scenes */
+
+/* Finds the scene; NULL with a diagnostic: there is none of that name. */
+static const cJSON *find_scene(const struct walk *walk, const char *name)
+{
+	const struct gltf *gltf = walk->gltf;
+	const cJSON *first = gltf_item(gltf, GLTF_SCENES, gltf->json.root, "scene", NULL);
+
+	for (uint32_t i = 0; name && i < gltf->lists[GLTF_SCENES].count; i++)
+		if (strcmp(name_of(gltf->lists[GLTF_SCENES].items[i]), name) == 0)
+			return gltf->lists[GLTF_SCENES].items[i];
+	if (name) {
+		gltf_say(gltf, -EINVAL, NULL,
+			 "has no scene \"%.60s\"; correct the name in scenes.json", name);
+		return NULL;
+	}
+	if (!first && gltf->lists[GLTF_SCENES].count > 0)
+		first = gltf->lists[GLTF_SCENES].items[0];
+	if (!first)
+		gltf_say(gltf, -EINVAL, NULL, "has no scene; export it with one");
+	return first;
+}
+
+static int add_scene(struct walk *walk, const cJSON *scene, uint32_t node,
+		     const struct gltf_choice *choice)
+{
+	const cJSON *roots = cJSON_GetObjectItemCaseSensitive(scene, "nodes"), *item;
+	uint32_t number = 0;
+	int rc = 0;
+
+	gltf_mark_animated(walk->gltf, walk->moves);
+	cJSON_ArrayForEach(item, roots)
+	{
+		const cJSON *root = child_of(walk, item, &number);
+
+		if (rc == 0 && !root)
+			rc = gltf_say(walk->gltf, -EBADMSG, scene,
+				      "the scene has a node that is none; export it anew");
+		if (rc == 0)
+			rc = mark(walk, root, number);
+	}
+	cJSON_ArrayForEach(item, roots)
+	{
+		const cJSON *root = rc == 0 ? child_of(walk, item, &number) : NULL;
+
+		if (root)
+			rc = visit(walk, root, number, node, vrml_identity, false);
+	}
+	if (rc == 0)
+		rc = fail(walk,
+			  gltf_motions_add(walk->maker, walk->gltf, walk->nodes,
+					   choice->plays_always, walk->warnings),
+			  scene);
+	return rc;
+}
+
+static void warn(const struct walk *walk)
+{
+	const char *path = walk->gltf->path;
+
+	if (walk->has_pictures)
+		diagnostics_add(walk->warnings, 0, path, 0,
+				"pictures on surfaces are left out: scenery has one colour a "
+				"corner");
+	if (walk->has_other_shapes)
+		diagnostics_add(walk->warnings, 0, path, 0,
+				"points and lines have no surface; they were left out");
+}
+
+int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint32_t node,
+		     const struct gltf_choice *choice, struct diagnostics *warnings)
+{
+	const uint32_t count = gltf->lists[GLTF_NODES].count;
+	struct walk walk = { .maker = maker, .gltf = gltf, .warnings = warnings };
+	const cJSON *scene = find_scene(&walk, choice->scene);
+	int rc = scene ? 0 : -EINVAL;
+
+	if (rc < 0)
+		return rc;
+	walk.moves = calloc((size_t)count + 1, sizeof(*walk.moves));
+	walk.was_seen = calloc((size_t)count + 1, sizeof(*walk.was_seen));
+	walk.nodes = malloc(((size_t)count + 1) * sizeof(*walk.nodes));
+	for (uint32_t i = 0; walk.nodes && i < count; i++)
+		walk.nodes[i] = SCENERY_NONE;
+	if (!walk.moves || !walk.was_seen || !walk.nodes)
+		rc = fail(&walk, -ENOMEM, NULL);
+	if (rc == 0)
+		rc = add_scene(&walk, scene, node, choice);
+	if (rc == 0)
+		warn(&walk);
+	free(walk.moves);
+	free(walk.was_seen);
+	free(walk.nodes);
+	return rc;
+}
