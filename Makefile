@@ -66,7 +66,7 @@ TEST_SOURCES := $(shell find tests -name 'test_*.c' | sort)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(shell find tests -name '*.c'))
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
-SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools/failing_calls
+SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools/failing_calls tests/tools/set_clock
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
 BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o $(BUILD)/obj/tests/bench/hand.o

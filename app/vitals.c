@@ -41,6 +41,34 @@ static void write_release(const struct vitals *vitals, struct buffer *out)
 		     (const struct figure_label[]){ { "root", hex }, { "name", root->name } }, 2);
 }
 
+static void write_expiry(struct buffer *out, const char *name, const char *help, int64_t expires_s)
+{
+	if (expires_s > 0)
+		metrics_gauge(out, name, help, (double)expires_s);
+}
+
+static void write_trust(const struct vitals *vitals, struct buffer *out)
+{
+	struct updater_trust trust;
+
+	updater_trust(vitals->updater, &trust);
+	metrics_gauge(out, "gopura_kiosk_trust_tuf",
+		      "Whether The Update Framework is followed, 0: the earlier form.", trust.tuf);
+	metrics_gauge(out, "gopura_kiosk_trust_root_version", "Of the trusted root, 0: none.",
+		      trust.root_version);
+	if (trust.tuf)
+		metrics_gauge(out, "gopura_kiosk_trust_timestamp_version",
+			      "Of the timestamp that was accepted last.", trust.timestamp_version);
+	write_expiry(out, "gopura_kiosk_trust_root_expires_at_seconds", "When the root expires.",
+		     trust.root_expires_s);
+	write_expiry(out, "gopura_kiosk_trust_timestamp_expires_at_seconds",
+		     "When the timestamp expires that was accepted last.",
+		     trust.timestamp_expires_s);
+	write_expiry(out, "gopura_kiosk_trust_release_expires_at_seconds",
+		     "When the release, its snapshot or its targets expire.",
+		     trust.release_expires_s);
+}
+
 static void write_refusal(const struct vitals *vitals, struct buffer *out)
 {
 	const struct metrics_refusal *refusal = updater_refusal(vitals->updater);
@@ -94,6 +122,7 @@ static void write_figures(void *data, struct buffer *out)
 
 	write_frames(vitals, out);
 	write_release(vitals, out);
+	write_trust(vitals, out);
 	write_refusal(vitals, out);
 	write_memory(vitals, out);
 	write_board(vitals, out);

@@ -152,6 +152,36 @@ static void write_server(const struct facts *facts)
 		     figure(facts, PROGRAM_FETCH, "gopura_fetch_requests_total"));
 }
 
+/* One of the times at which something that is signed expires. */
+static void put_expiry(const struct facts *facts, const char *before, const char *name)
+{
+	const double left_s =
+		figure(facts, PROGRAM_KIOSK, name) - (double)facts->snapshot->taken_wall_s;
+
+	if (isnan(left_s))
+		return;
+	buffer_put_text(facts->out, before);
+	put_duration(facts->out, fabs(left_s));
+	if (left_s < 0)
+		buffer_put_text(facts->out, " ago");
+}
+
+static void write_trust(const struct facts *facts)
+{
+	const double version = figure(facts, PROGRAM_KIOSK, "gopura_kiosk_trust_root_version");
+
+	if (!(version > 0))
+		return;
+	row(facts, "Signatures");
+	buffer_print(facts->out, "root %.0f%s", version,
+		     figure(facts, PROGRAM_KIOSK, "gopura_kiosk_trust_tuf") == 1
+			     ? " of The Update Framework"
+			     : "");
+	put_expiry(facts, ", expires in ", "gopura_kiosk_trust_root_expires_at_seconds");
+	put_expiry(facts, "; timestamp ", "gopura_kiosk_trust_timestamp_expires_at_seconds");
+	put_expiry(facts, "; release ", "gopura_kiosk_trust_release_expires_at_seconds");
+}
+
 static void write_refusal(const struct facts *facts, enum program program, const char *name,
 			  const char *at, const char *info)
 {
@@ -299,6 +329,7 @@ void overview_write(struct buffer *out, const struct snapshot *snapshot,
 	write_findings(out, verdict);
 	buffer_put_text(out, "<h2>Content</h2><table>");
 	write_release(&facts);
+	write_trust(&facts);
 	write_server(&facts);
 	write_refusal(&facts, PROGRAM_KIOSK, "Last rejected release",
 		      "gopura_kiosk_refused_at_seconds", "gopura_kiosk_refusal_info");

@@ -185,6 +185,43 @@ static void judge_refusal(struct verdict *verdict, const struct snapshot *snapsh
 	    "%s, %s ago: %s", what, ago, why);
 }
 
+/* Judges what must be signed anew. Nothing on the panel ever expires; only what is offered does, so
+ * an update would be refused. days: begins to say so that many days before. */
+static void judge_expiry(struct verdict *verdict, const struct snapshot *snapshot, const char *name,
+			 int days, const char *what, const char *action)
+{
+	const double left_s =
+		figure(snapshot, PROGRAM_KIOSK, name) - (double)snapshot->taken_wall_s;
+	char time[40];
+
+	if (!(left_s < days * 86400.0) ||
+	    figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock_trusted") != 1)
+		return;
+	verdict_duration(time, sizeof(time), fabs(left_s));
+	add(verdict, LEVEL_WARNING, what, action, left_s < 0 ? "Expired %s ago." : "%s left.",
+	    time);
+}
+
+static void judge_trust(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	judge_expiry(
+		verdict, snapshot, "gopura_kiosk_trust_root_expires_at_seconds", 60,
+		"The trust root must be renewed",
+		"When it has expired, this terminal takes no new release; visitors go on seeing "
+		"the last one. The publisher must sign the next root (docs/release.md).");
+	judge_expiry(
+		verdict, snapshot, "gopura_kiosk_trust_release_expires_at_seconds", 30,
+		"The release must be signed again",
+		"When it has expired, new terminals do not take it; this one goes on showing it. "
+		"Publish again.");
+	judge_expiry(
+		verdict, snapshot, "gopura_kiosk_trust_timestamp_expires_at_seconds", 3,
+		"The publisher's timestamp is old",
+		"This terminal goes on showing what it has. If it has a network, the publisher "
+		"has not signed for long: gopura-content publish signs a new timestamp. If it "
+		"has none, a stick with the release brings it (docs/release.md).");
+}
+
 static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
 {
 	const double since_s =
@@ -270,6 +307,7 @@ void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 	judge_picture(out, snapshot);
 	judge_content(out, snapshot);
 	judge_refusal(out, snapshot);
+	judge_trust(out, snapshot);
 	judge_machine(out, snapshot);
 	judge_restart(out, snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts_total",
 		      "gopura_kiosk_uptime_seconds", "The display program was restarted");

@@ -53,11 +53,10 @@ static void note(struct tuf_follower *follower, enum tuf_type type)
 	struct tuf_file file = { 0 };
 	const char *why;
 
-	follower->expires_s[type] = 0;
+	follower->expires_s[type] = follower->version[type] = 0;
 	if (tuf_file_parse(&file, buffer_bytes(&follower->kept[type]), type, &why) == 0) {
 		follower->expires_s[type] = file.expires_s;
-		if (type == TUF_ROOT)
-			follower->root_version = file.version;
+		follower->version[type] = file.version;
 		if (type == TUF_TIMESTAMP)
 			follower->issued_s = issued_s(&file);
 	}
@@ -97,6 +96,7 @@ static void clear_round(struct tuf_round *round)
 {
 	while (round->count > 0)
 		buffer_finish(&round->files[--round->count].bytes);
+	round->done = false;
 }
 
 void tuf_follower_finish(struct tuf_follower *follower)
@@ -279,10 +279,11 @@ void tuf_follower_begin(struct tuf_follower *follower, enum meta_source source,
 	struct tuf_round *round = &follower->rounds[source];
 	const struct tuf_arrived *before = find(round, file.name);
 
-	if (before && bytes_equal(buffer_bytes(&before->bytes), timestamp))
-		drop_roots(round);
-	else
+	if (!before || !bytes_equal(buffer_bytes(&before->bytes), timestamp))
 		clear_round(round);
+	else if (round->done)
+		drop_roots(round);
+	round->done = false;
 	tuf_follower_add(follower, &file);
 }
 
@@ -342,7 +343,7 @@ static bool forget_withdrawn(struct tuf_follower *follower, const struct tuf_fil
 	tuf_file_finish(&file);
 	if (withdrawn) {
 		buffer_clear(&follower->kept[type]);
-		follower->expires_s[type] = 0;
+		follower->expires_s[type] = follower->version[type] = 0;
 	}
 	return withdrawn;
 }
@@ -425,6 +426,7 @@ int tuf_follower_run(struct tuf_follower *follower, enum meta_source source, int
 		refuse(follower, rc, client.why);
 	else
 		rc = bring(&run, &target, known, out);
+	follower->rounds[source].done = rc == 0;
 	if (rc < 0 && rc != -EAGAIN)
 		clear_round(&follower->rounds[source]);
 	tuf_target_finish(&target);

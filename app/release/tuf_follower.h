@@ -23,6 +23,7 @@ struct tuf_arrived {
 struct tuf_round {
 	struct tuf_arrived *files; /* owned; TUF_ROUND_FILES_MAX of them, or NULL */
 	uint32_t count;
+	bool done; /* all of them were taken */
 };
 
 struct tuf_follower {
@@ -33,7 +34,7 @@ struct tuf_follower {
 	bool changed;
 	enum state_clear clear;
 	/* Of what is kept; 0: none. issued_s: when the timestamp was signed, if it says so. */
-	uint32_t root_version;
+	uint32_t version[TUF_TYPES];
 	int64_t expires_s[TUF_TYPES], issued_s;
 	uint32_t first_root, first_root_last; /* the version that is asked for; 0: none */
 	char why[256];                        /* after a failure, for people */
@@ -65,8 +66,9 @@ bool tuf_follower_begin_first(struct tuf_follower *follower, uint32_t last,
 must_check int tuf_follower_first(struct tuf_follower *follower, const struct message_file *file,
 				  const struct trust_root *signers);
 
-/* Begins a round with a timestamp. If it is the one of the round before, which did not fail, what
- * arrived then is used again, but for roots. */
+/* Begins a round with a timestamp. If it is the one of the round before, and that did not fail,
+ * what arrived then is used again, but for roots. If that still waits for a file, it goes on, so
+ * that a slow line may take longer than the time between two timestamps. */
 void tuf_follower_begin(struct tuf_follower *follower, enum meta_source source,
 			struct bytes timestamp);
 /* Adds a file that arrived, or that the source does not have; copied. */

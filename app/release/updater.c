@@ -312,7 +312,7 @@ static void store_tuf(struct updater *updater)
 		updater->trust.time_floor_s = 0;
 	if (clear != STATE_CLEAR_NOTHING)
 		log_info("app", "root %u revokes keys; the limits that they set are cleared",
-			 tuf->root_version);
+			 tuf->version[TUF_ROOT]);
 	if (state_writer_set_tuf(updater->writer, &kept, clear) < 0)
 		log_warn("app", "the trusted metadata could not be stored");
 	if (tuf->issued_s > updater->trust.time_floor_s) {
@@ -372,7 +372,7 @@ static void go_over(struct updater *updater, const struct message_file *file)
 		log_info("app",
 			 "root %u of The Update Framework is trusted from now on, and the earlier "
 			 "form no more",
-			 tuf->root_version);
+			 tuf->version[TUF_ROOT]);
 		store_tuf(updater);
 	} else if (rc == -EAGAIN) {
 		updater->options.ask(updater->options.data, &tuf->ask);
@@ -390,11 +390,6 @@ void updater_file(struct updater *updater, const struct message_file *file)
 	}
 	tuf_follower_add(&updater->tuf, file);
 	follow_tuf(updater, file->source);
-}
-
-const struct tuf_follower *updater_tuf(const struct updater *updater)
-{
-	return tuf_follower_is_on(&updater->tuf) ? &updater->tuf : NULL;
 }
 
 /* ---- the earlier form */
@@ -485,6 +480,38 @@ uint64_t updater_sequence(const struct updater *updater)
 	/* The floor may have been cleared by a new root. */
 	return updater->trust.sequence_floor > 0 ? updater->trust.sequence_floor
 						 : updater->shown.sequence;
+}
+
+static int64_t earlier(int64_t a, int64_t b)
+{
+	return a == 0 || (b > 0 && b < a) ? b : a;
+}
+
+void updater_trust(const struct updater *updater, struct updater_trust *out)
+{
+	const struct tuf_follower *tuf = &updater->tuf;
+	const struct trust *trust = &updater->trust;
+	struct release release;
+
+	*out = (struct updater_trust){ .tuf = tuf_follower_is_on(tuf) };
+	if (release_decode_target(&release, buffer_bytes(&updater->shown_file), NULL) == 0)
+		out->release_expires_s = release.expires_s;
+	if (out->tuf) {
+		out->root_version = tuf->version[TUF_ROOT];
+		out->timestamp_version = tuf->version[TUF_TIMESTAMP];
+		out->root_expires_s = tuf->expires_s[TUF_ROOT];
+		out->timestamp_expires_s = tuf->expires_s[TUF_TIMESTAMP];
+		out->release_expires_s =
+			earlier(out->release_expires_s,
+				earlier(tuf->expires_s[TUF_SNAPSHOT], tuf->expires_s[TUF_TARGETS]));
+		return;
+	}
+	if (trust->trusted) {
+		out->root_version = trust->root.version;
+		out->root_expires_s = trust->root.expires_s;
+	}
+	if (trust->have_timestamp)
+		out->timestamp_expires_s = trust->timestamp.expires_s;
 }
 
 const struct metrics_refusal *updater_refusal(const struct updater *updater)

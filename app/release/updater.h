@@ -8,8 +8,17 @@
 #include "base/metrics_refusal.h"
 #include "net/client.h"
 
-struct tuf_follower; /* app/release/tuf_follower.h */
 struct updater;
+
+/* What is trusted, for the metrics. Times are in seconds since 1970; 0: none is known. */
+struct updater_trust {
+	bool tuf;                                 /* The Update Framework is followed */
+	uint32_t root_version, timestamp_version; /* 0: none; the earlier form has no version of a
+						     timestamp */
+	int64_t root_expires_s, timestamp_expires_s;
+	/* Of release.json and all that says which one it is, whatever expires first. */
+	int64_t release_expires_s;
+};
 
 struct updater_options {
 	const char *state_path; /* state.db; borrowed, needed by updater_create only */
@@ -65,8 +74,7 @@ void updater_refuse(struct updater *updater, struct hash root, const char *why);
 /* Returns the last refusal of an offered release or its files. Borrowed; its counter rises with
  * each. */
 const struct metrics_refusal *updater_refusal(const struct updater *updater);
-/* What is trusted by The Update Framework: borrowed; NULL: the terminal does not follow it. */
-const struct tuf_follower *updater_tuf(const struct updater *updater);
+void updater_trust(const struct updater *updater, struct updater_trust *out);
 /* Returns a descriptor, borrowed, that is readable when updater_dispatch has something to do. */
 int updater_fd(const struct updater *updater);
 /* Handles an answer of the state writer and calls `remembered`. Returns 0. */

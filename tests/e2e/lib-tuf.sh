@@ -14,11 +14,14 @@ publish() {
 	"$content" build "$work/content" --out "$release" --keys "$keys" --comment "$1" >"$work/log" 2>&1 || { cat "$work/log"; fail "publishing $1"; }
 }
 
-# terminal NAME [TRUST]: starts a kiosk of that name; TRUST at its first start. Its log is anew.
+# terminal NAME [TRUST]: starts a kiosk of that name; TRUST at its first start. Its log is anew. Its fetcher gives up a
+# request that brings nothing for two seconds.
 declare -A pids
 terminal() {
+	printf '#!/bin/bash\nexec build/gopura-fetch --stall-s 2 --metrics %s "$@"\n' "$work/$1-fetch.metrics" >"$work/$1-fetch"
+	chmod +x "$work/$1-fetch"
 	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 --stick "$work/media" \
-		--metrics "$work/$1.metrics" --state "$work/state-$1" ${2:+--trust "$2"} 2>"$work/$1.log" &
+		--fetch "$work/$1-fetch" --metrics "$work/$1.metrics" --state "$work/state-$1" ${2:+--trust "$2"} 2>"$work/$1.log" &
 	pids[$1]=$!
 }
 stop_terminal() {
@@ -42,3 +45,11 @@ said() { grep -q "$2" "$work/$1.log"; }
 shown() { [ "$(grep -c 'release .* is shown' "$work/$1.log")" -ge "$2" ]; }
 has_shown() { grep -q "release $2 is stored in the state" "$work/$1.log"; }
 refused() { grep -v 'refused tuf/1.root.json' "$work/$1.log" | grep -q 'refused'; }
+
+# metrics NAME: of a terminal, or of its fetcher: NAME-fetch. figure NAME METRIC: one of them; why NAME: the last refusal.
+metrics() { python3 -c 'import socket, sys
+s = socket.socket(socket.AF_UNIX)
+s.connect(sys.argv[1])
+sys.stdout.write(b"".join(iter(lambda: s.recv(65536), b"")).decode())' "$work/$1.metrics"; }
+figure() { metrics "$1" | sed -n "s/^$2 //p"; }
+why() { metrics "$1" | grep '^gopura_kiosk_refusal_info'; }

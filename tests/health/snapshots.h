@@ -9,15 +9,18 @@
 #include "health/gather.h"
 #include "tests/check.h"
 
-#define WELL_KIOSK                                                                                 \
-	"gopura_kiosk_uptime_seconds 90000\ngopura_kiosk_starts_total 1\n"                         \
-	"gopura_kiosk_frames_total 5000\ngopura_kiosk_late_frames_total 12\n"                      \
-	"gopura_kiosk_last_frame_age_seconds 4.5\ngopura_kiosk_picture 1\n"                        \
-	"gopura_kiosk_touch_devices 1\ngopura_kiosk_clock_trusted 1\n"                             \
-	"gopura_kiosk_release_sequence 7\ngopura_kiosk_resident_bytes 150000000\n"                 \
-	"gopura_kiosk_release_info{root=\"e8df\",name=\"Prasat <b>\"} 1\n"                         \
-	"gopura_kiosk_texture_bytes 1000\ngopura_kiosk_texture_budget_bytes 4000\n"                \
-	"gopura_kiosk_geometry_bytes 1000\ngopura_kiosk_geometry_budget_bytes 4000\n"              \
+#define WELL_KIOSK                                                                                   \
+	"gopura_kiosk_uptime_seconds 90000\ngopura_kiosk_starts_total 1\n"                           \
+	"gopura_kiosk_frames_total 5000\ngopura_kiosk_late_frames_total 12\n"                        \
+	"gopura_kiosk_last_frame_age_seconds 4.5\ngopura_kiosk_picture 1\n"                          \
+	"gopura_kiosk_touch_devices 1\ngopura_kiosk_clock_trusted 1\n"                               \
+	"gopura_kiosk_release_sequence 7\ngopura_kiosk_resident_bytes 150000000\n"                   \
+	"gopura_kiosk_release_info{root=\"e8df\",name=\"Prasat <b>\"} 1\n"                           \
+	"gopura_kiosk_texture_bytes 1000\ngopura_kiosk_texture_budget_bytes 4000\n"                  \
+	"gopura_kiosk_geometry_bytes 1000\ngopura_kiosk_geometry_budget_bytes 4000\n"                \
+	"gopura_kiosk_trust_root_version 2\ngopura_kiosk_trust_root_expires_at_seconds 1900000000\n" \
+	"gopura_kiosk_trust_timestamp_expires_at_seconds 1702000000\n"                               \
+	"gopura_kiosk_trust_release_expires_at_seconds 1800000000\n"                                 \
 	"gopura_kiosk_gl_info{renderer=\"V3D 7.1\"} 1\n"
 #define WELL_FETCH                                                                                 \
 	"gopura_fetch_uptime_seconds 90000\ngopura_fetch_starts_total 1\n"                         \

@@ -1,4 +1,5 @@
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "health/verdict.h"
@@ -173,6 +174,47 @@ static void a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour(void 
 	CHECK(finds_nothing());
 }
 
+static void says_days_before_what_must_be_signed_anew(void **state)
+{
+	static const struct {
+		const char *name, *what;
+		int days;
+	} files[] = {
+		{ "gopura_kiosk_trust_root_expires_at_seconds", "trust root", 60 },
+		{ "gopura_kiosk_trust_release_expires_at_seconds", "release must be signed", 30 },
+		{ "gopura_kiosk_trust_timestamp_expires_at_seconds", "timestamp is old", 3 },
+	};
+	char line[96];
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(files); i++) {
+		const long limit_s = NOW_S + files[i].days * 86400;
+
+		snprintf(line, sizeof(line), "%s %ld", files[i].name, limit_s);
+		change(&snapshot, PROGRAM_KIOSK, files[i].name, line);
+		CHECK(finds_nothing());
+		snprintf(line, sizeof(line), "%s %ld", files[i].name, limit_s - 1);
+		change(&snapshot, PROGRAM_KIOSK, files[i].name, line);
+		CHECK(finds(LEVEL_WARNING, files[i].what));
+		CHECK(strstr(verdict.findings[0].detail, " days left."));
+		snprintf(line, sizeof(line), "%s %d", files[i].name, NOW_S - 3 * 86400);
+		change(&snapshot, PROGRAM_KIOSK, files[i].name, line);
+		CHECK(finds(LEVEL_WARNING, files[i].what));
+		CHECK(strcmp(verdict.findings[0].detail, "Expired 3 days ago.") == 0);
+		change(&snapshot, PROGRAM_KIOSK, files[i].name, ""); /* not known */
+		CHECK(finds_nothing());
+	}
+}
+
+static void a_clock_that_nobody_set_judges_no_expiry(void **state)
+{
+	(void)state;
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_trust_root_expires",
+	       "gopura_kiosk_trust_root_expires_at_seconds 1");
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock", "gopura_kiosk_clock_trusted 0");
+	CHECK(finds(LEVEL_WARNING, "clock"));
+}
+
 static void a_restart_is_told_for_an_hour(void **state)
 {
 	(void)state;
@@ -245,6 +287,8 @@ int main(void)
 		CASE(heat_and_want_of_memory_have_two_degrees),
 		CASE(a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour),
 		CASE(a_restart_is_told_for_an_hour),
+		CASE(says_days_before_what_must_be_signed_anew),
+		CASE(a_clock_that_nobody_set_judges_no_expiry),
 		CASE(each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first),
 		CASE(more_faults_than_have_room_leave_what_is_ill),
 		CASE(durations_are_in_the_unit_that_says_most),
