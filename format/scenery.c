@@ -39,19 +39,20 @@ static bool are_near(const float *numbers, int count)
 	return true;
 }
 
-static bool is_turn(const float turn[4])
+static bool is_unit(const float *numbers, int count)
 {
 	float square = 0;
 
-	for (int i = 0; i < 4; i++)
-		square += turn[i] * turn[i];
+	for (int i = 0; i < count; i++)
+		square += numbers[i] * numbers[i];
 	return fabsf(square - 1) < 1e-3f;
 }
 
 static bool place_is_sane(const struct scenery_place *place)
 {
 	return are_near(place->move_m, 3) && are_near(place->scale, 3) &&
-	       are_near(place->centre_m, 3) && is_turn(place->turn) && is_turn(place->stretch);
+	       are_near(place->centre_m, 3) && is_unit(place->turn, 4) &&
+	       is_unit(place->stretch, 4);
 }
 
 static bool nodes_are_sane(const struct scenery *scenery)
@@ -89,9 +90,14 @@ static bool materials_are_sane(const struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->material_count; i++) {
 		const struct scenery_material *material = &scenery->materials[i];
 		const uint8_t *rgb = material->specular;
+		const bool needs_pixels =
+			material->substance || material->relief_m > 0 || material->mirror > 0;
 
 		if (!is_within(material->opacity, 1.0f / 255, 1) ||
-		    !is_within(material->shininess, rgb[0] || rgb[1] || rgb[2] ? 1 : 0, 128))
+		    !is_within(material->shininess, rgb[0] || rgb[1] || rgb[2] ? 1 : 0, 128) ||
+		    material->substance >= SCENERY_SUBSTANCES ||
+		    !is_within(material->relief_m, 0, 0.1f) || !is_within(material->mirror, 0, 1) ||
+		    !is_unit(material->grain, 3) || (needs_pixels && !material->by_pixel))
 			return false;
 	}
 	return true;
@@ -148,7 +154,7 @@ static bool values_are_sane(const struct scenery_track *track, const float *valu
 		const float *value = &values[k * width];
 
 		if (!are_near(value, (int)width) ||
-		    (track->target == SCENERY_TURN && !is_turn(value)) ||
+		    (track->target == SCENERY_TURN && !is_unit(value, 4)) ||
 		    (track->target == SCENERY_OPACITY && (value[0] < 0 || value[0] > 1)))
 			return false;
 	}

@@ -14,6 +14,7 @@ enum {
 	SCENERY_DEPTH_MAX = 64, /* of nodes below each other */
 	SCENERY_MESHES_MAX = 4096,
 	SCENERY_MATERIALS_MAX = 256,
+	SCENERY_SUBSTANCES = 5, /* as many as enum substance_kind of geometry/substance.h has */
 	SCENERY_VERTICES_MAX = 65535,          /* of a mesh */
 	SCENERY_TRIANGLES_MAX = 1 << 18,       /* of a mesh */
 	SCENERY_ALL_TRIANGLES_MAX = 1 << 19,   /* of all meshes */
@@ -61,6 +62,13 @@ struct scenery_material {
 	uint8_t emissive[3]; /* sRGB; added to the colour, whatever the light */
 	uint8_t specular[3]; /* sRGB; of the highlight of the sun */
 	float shininess;     /* 1 to 128: exponent of the highlight, if specular is not black */
+	/* The next three need by_pixel. */
+	uint8_t substance; /* enum substance_kind: its pattern is on the colours; 0: none */
+	/* Up to 0.1: how deep the dark places of the substance lie below the light ones; without a
+	 * substance, the hollows of hewn stone. */
+	float relief_m;
+	float mirror;   /* 0 to 1: share of what is around it in its colour */
+	float grain[3]; /* unit vector in the node: the substance's axis, as that of a tree */
 };
 
 /* What is far away fades into a colour, the scan too. */

@@ -16,7 +16,7 @@ enum {
 	OBJECT_MAX = 16 << 20,
 	/* the bytes of one: */
 	NODE_BYTES = 2 * 4 + 17 * 4,
-	MATERIAL_BYTES = 1 + 4 + 3 + 3 + 4,
+	MATERIAL_BYTES = 1 + 4 + 3 + 3 + 4 + 1 + 4 + 4 + 3 * 4,
 	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4, /* at least */
 	VERTEX_BYTES = 11,
 	TRIANGLE_BYTES = 6,
@@ -83,6 +83,10 @@ static void put_material(struct buffer *out, const struct scenery_material *mate
 	buffer_put(out, material->emissive, 3);
 	buffer_put(out, material->specular, 3);
 	buffer_put_f32(out, material->shininess);
+	buffer_put_u8(out, material->substance);
+	buffer_put_f32(out, material->relief_m);
+	buffer_put_f32(out, material->mirror);
+	put_floats(out, material->grain, 3);
 }
 
 static void get_rgb(struct reader *in, uint8_t rgb[3])
@@ -102,6 +106,10 @@ static void get_material(struct reader *in, struct scenery_material *material)
 	get_rgb(in, material->emissive);
 	get_rgb(in, material->specular);
 	material->shininess = reader_f32(in);
+	material->substance = reader_u8(in);
+	material->relief_m = reader_f32(in);
+	material->mirror = reader_f32(in);
+	get_floats(in, material->grain, 3);
 }
 
 static void put_fog(struct buffer *out, const struct scenery_fog *fog)
@@ -344,7 +352,9 @@ static void get_looks(struct reader *in, struct scenery *out, uint8_t version)
 		return;
 	}
 	for (uint32_t i = 0; i < PLAIN_MATERIALS; i++)
-		out->materials[i] = (struct scenery_material){ .has_two_sides = i, .opacity = 1 };
+		out->materials[i] = (struct scenery_material){ .has_two_sides = i,
+							       .opacity = 1,
+							       .grain = { 0, 0, 1 } };
 	out->fog.layer = SCENERY_NONE;
 }
 

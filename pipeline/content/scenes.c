@@ -16,7 +16,7 @@
 
 static const char scenes_file[] = "scenes.json";
 
-enum { FILE_BYTES_MAX = 1 << 20, ID_BYTES_MAX = 64 };
+enum { FILE_BYTES_MAX = 1 << 20, ID_BYTES_MAX = 64, LOOKS_MAX = 64 };
 
 struct reading {
 	const struct content *content;
@@ -194,11 +194,74 @@ static bool read_choice(struct reading *r, const cJSON *json, unsigned line,
 	return false;
 }
 
+/* ---- materials */
+
+/* Returns the number of a key from 0 to most, 0 if it is left out. */
+static float get_share(struct reading *r, const cJSON *json, const char *key, float most,
+		       unsigned line)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, key);
+
+	if (!item)
+		return 0;
+	if (cJSON_IsNumber(item) && item->valuedouble >= 0 && item->valuedouble <= most)
+		return (float)item->valuedouble;
+	fault(r, line, "\"%s\" must be a number from 0 to %g", key, most);
+	return 0;
+}
+
+static void read_look(struct reading *r, const cJSON *json, struct scenery_look *look)
+{
+	const unsigned line = json_text_line(&r->json, json);
+	const cJSON *substance = cJSON_GetObjectItemCaseSensitive(json, "substance");
+	const char *name = cJSON_GetStringValue(substance);
+
+	*look = (struct scenery_look){ .name = json->string };
+	if (!cJSON_IsObject(json)) {
+		fault(r, line, "material \"%.64s\" must be {\"substance\": \"wood\"}", look->name);
+		return;
+	}
+	check_keys(r, json, " substance relief mirror ");
+	look->substance = name ? substance_named(name) : SUBSTANCE_NONE;
+	if (look->substance == SUBSTANCE_KINDS || (substance && !name)) {
+		fault(r, line,
+		      "\"substance\" must be marble, wood, sandstone, laterite or none, not "
+		      "\"%.20s\"",
+		      name ? name : "");
+		look->substance = SUBSTANCE_NONE;
+	}
+	look->relief_m = get_share(r, json, "relief", 0.1f, line);
+	look->mirror = get_share(r, json, "mirror", 1, line);
+}
+
+/* Fills looks from the materials of a scene. */
+static uint32_t read_looks(struct reading *r, const cJSON *scene,
+			   struct scenery_look looks[LOOKS_MAX])
+{
+	const cJSON *materials = cJSON_GetObjectItemCaseSensitive(scene, "materials");
+	const unsigned line = json_text_line(&r->json, scene);
+	uint32_t count = 0;
+	const cJSON *item;
+
+	if (!materials)
+		return 0;
+	if (!cJSON_IsObject(materials) || cJSON_GetArraySize(materials) > LOOKS_MAX) {
+		fault(r, line, "\"materials\" must be {\"NAME\": {...}} with at most %d names",
+		      LOOKS_MAX);
+		return 0;
+	}
+	cJSON_ArrayForEach(item, materials) read_look(r, item, &looks[count++]);
+	return count;
+}
+
+/* ---- the scenes */
+
 static int read_scene(struct reading *r, const cJSON *json)
 {
 	const unsigned line = json_text_line(&r->json, json);
 	const char *name = text_of(json, "file");
 	char path[CONTENT_PATH_BYTES];
+	struct scenery_look looks[LOOKS_MAX];
 	struct import_options options;
 	struct import_scene scene;
 	uint32_t layer;
@@ -206,7 +269,7 @@ static int read_scene(struct reading *r, const cJSON *json)
 
 	if (!cJSON_IsObject(json) || !name)
 		return fault(r, line, "a scene is {\"file\": \"scenes/door.wrl\"}");
-	check_keys(r, json, " file layer up unit scene plays ");
+	check_keys(r, json, " file layer up unit scene plays materials ");
 	if (strncmp(name, "scenes/", 7) != 0 || strchr(name + 7, '/') ||
 	    content_file_path(r->content, name, path) < 0)
 		return fault(r, line,
@@ -215,8 +278,16 @@ static int read_scene(struct reading *r, const cJSON *json)
 		return 0;
 	if (layer != SCENERY_NONE)
 		r->layer_uses[layer]++;
+	r->maker.looks = looks;
+	r->maker.look_count = read_looks(r, json, looks);
 	rc = import_scenery(&r->maker, path, layer, &options, &scene, r->diagnostics,
 			    r->diagnostics);
+	for (uint32_t i = 0; rc == 0 && i < r->maker.look_count; i++)
+		if (!looks[i].is_used)
+			fault(r, line, "no material of %s is called \"%.64s\": correct the name",
+			      name, looks[i].name);
+	r->maker.looks = NULL;
+	r->maker.look_count = 0;
 	return rc == -ENOMEM ? rc : 0;
 }
 

@@ -9,6 +9,7 @@
 
 #include "geometry/vec.h"
 #include "pipeline/scene/gltf_motions.h"
+#include "pipeline/scene/scenery_look.h"
 #include "pipeline/scene/vrml_graph.h"
 
 enum { TRIANGLES = 4, STRIP = 5, FAN = 6, DEPTH_MAX = 200 };
@@ -19,6 +20,7 @@ struct walk {
 	struct diagnostics *warnings;
 	bool *moves, *was_seen; /* by node of the file */
 	uint32_t *nodes;        /* of the scenery */
+	uint32_t root;          /* of the scenery, that stands for the file */
 	uint32_t depth;
 	bool has_pictures, has_other_shapes;
 };
@@ -164,11 +166,49 @@ static float to_srgb(float linear)
 struct look {
 	float factor[4]; /* baseColorFactor, linear */
 	struct scenery_material material;
+	bool has_mean; /* of a substance, in place of the factor */
+	uint8_t mean[3];
 };
 
 static uint8_t to_byte(float linear)
 {
 	return (uint8_t)(to_srgb(linear) * 255 + 0.5f);
+}
+
+/* Returns a number from 0 to 1; 1 if it is left out. */
+static float get_factor(const cJSON *pbr, const char *key)
+{
+	const cJSON *item = cJSON_GetObjectItemCaseSensitive(pbr, key);
+
+	return cJSON_IsNumber(item) ? fminf(fmaxf((float)item->valuedouble, 0), 1) : 1;
+}
+
+/* A smooth surface has a highlight, and a smooth metal mirrors. What glTF leaves out is rough
+ * metal, which has neither. */
+static void get_gloss(const struct walk *walk, struct look *out, const cJSON *pbr,
+		      const cJSON *material)
+{
+	static const float least_smooth = 0.3f;
+	const float rough = get_factor(pbr, "roughnessFactor");
+	const float metal = get_factor(pbr, "metallicFactor"), smooth = 1 - rough;
+	float strength;
+
+	if (smooth >= least_smooth && !cJSON_HasObjectItem(pbr, "metallicRoughnessTexture")) {
+		for (int k = 0; k < 3; k++) {
+			strength = 0.25f + metal * (out->factor[k] - 0.25f);
+			out->material.specular[k] = to_byte(strength * smooth);
+		}
+		/* as wide as the lobe of that roughness (Walter et al. 2007: alpha is its square)
+		 */
+		out->material.shininess = fminf(fmaxf(2 / powf(fmaxf(rough, 0.2f), 4) - 2, 1), 128);
+		out->material.mirror = 0.6f * metal * smooth;
+		out->material.by_pixel = true;
+	}
+	scenery_look_add(walk->maker, name_of(material), &out->material);
+	if (out->material.substance && !cJSON_HasObjectItem(pbr, "baseColorFactor")) {
+		scenery_look_mean(out->mean, &out->material);
+		out->has_mean = true;
+	}
 }
 
 static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
@@ -180,7 +220,7 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(material, "alphaMode"));
 	float emissive[3];
 
-	out->material = scenery_plain;
+	*out = (struct look){ .material = scenery_plain };
 	out->material.has_two_sides =
 		cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(material, "doubleSided"));
 	if (!get_floats(out->factor, pbr, "baseColorFactor", 4, white) ||
@@ -192,6 +232,7 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 		out->material.emissive[k] = to_byte(emissive[k]);
 	if (alpha && strcmp(alpha, "BLEND") == 0)
 		out->material.opacity = fminf(fmaxf(out->factor[3], 0), 1);
+	get_gloss(walk, out, pbr, material);
 	walk->has_pictures |= cJSON_HasObjectItem(pbr, "baseColorTexture");
 	return 0;
 }
@@ -251,7 +292,8 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 			shape->has_colours ? gltf_number(&shape->colours, vertex, (uint32_t)k) : 1;
 
 		out->position[k] = gltf_number(&shape->positions, vertex, (uint32_t)k);
-		out->rgb[k] = to_byte(colour * shape->look.factor[k]);
+		out->rgb[k] = shape->look.has_mean ? shape->look.mean[k]
+						   : to_byte(colour * shape->look.factor[k]);
 		if (!isfinite(out->position[k]))
 			return false;
 	}
@@ -299,6 +341,7 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 		gltf_say(walk->gltf, rc, primitive,
 			 "mesh \"%.60s\" has indices or places that are none; export it anew",
 			 name_of(mesh));
+	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
 	if (rc == 0)
 		rc = scenery_add_surface(walk->maker, node, &shape.look.material, soup.triangles,
 					 soup.count, shape.has_normals ? round : 0);
@@ -472,7 +515,7 @@ int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint3
 		     const struct gltf_choice *choice, struct diagnostics *warnings)
 {
 	const uint32_t count = gltf->lists[GLTF_NODES].count;
-	struct walk walk = { .maker = maker, .gltf = gltf, .warnings = warnings };
+	struct walk walk = { .maker = maker, .gltf = gltf, .warnings = warnings, .root = node };
 	const cJSON *scene = find_scene(&walk, choice->scene);
 	int rc = scene ? 0 : -EINVAL;
 

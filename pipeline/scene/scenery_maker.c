@@ -10,7 +10,7 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_mesh.h"
 
-const struct scenery_material scenery_plain = { .opacity = 1 };
+const struct scenery_material scenery_plain = { .opacity = 1, .grain = { 0, 0, 1 } };
 const struct scenery_place scenery_at_rest = { .turn = { 0, 0, 0, 1 },
 					       .scale = { 1, 1, 1 },
 					       .stretch = { 0, 0, 0, 1 } };
@@ -42,6 +42,8 @@ static bool are_equal(const struct scenery_material *a, const struct scenery_mat
 {
 	return a->has_two_sides == b->has_two_sides && a->by_pixel == b->by_pixel &&
 	       a->opacity == b->opacity && a->shininess == b->shininess &&
+	       a->substance == b->substance && a->relief_m == b->relief_m &&
+	       a->mirror == b->mirror && vec_dot(a->grain, b->grain) > 0.99999f &&
 	       memcmp(a->emissive, b->emissive, sizeof(a->emissive)) == 0 &&
 	       memcmp(a->specular, b->specular, sizeof(a->specular)) == 0;
 }

@@ -4,10 +4,19 @@
 #define GOPURA_PIPELINE_SCENE_SCENERY_MAKER_H
 
 #include "format/scenery.h"
+#include "geometry/substance.h"
 #include "pipeline/scene/soup.h"
 
 /* The triangles of a node that become meshes. */
 struct scenery_sheet;
+
+/* What the content adds to the materials of a file that are called so. */
+struct scenery_look {
+	const char *name; /* borrowed */
+	enum substance_kind substance;
+	float relief_m, mirror; /* as in struct scenery_material */
+	bool is_used;           /* some material is called so */
+};
 
 /* Zeroed is empty. */
 struct scenery_maker {
@@ -16,6 +25,8 @@ struct scenery_maker {
 	uint32_t material_room, clear_count;
 	struct scenery_sheet *sheets; /* owned */
 	uint32_t sheet_count, sheet_room, triangle_count;
+	struct scenery_look *looks; /* borrowed; of the file that is being read */
+	uint32_t look_count;
 };
 
 /* A dull, solid surface with one side, in the colours of its corners. */

@@ -24,6 +24,7 @@ struct vrml_node {
 	const struct vrml_node_type *type;
 	const char *file; /* where it stands */
 	unsigned line;
+	const char *name;                                 /* of DEF; NULL: none */
 	const struct vrml_value *values[VRML_FIELDS_MAX]; /* NULL: not given */
 	/* of an Inline: the nodes of its file */
 	struct vrml_node *const *children;

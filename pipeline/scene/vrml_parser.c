@@ -572,8 +572,10 @@ static int parse_node(struct vrml_parser *parser, struct vrml_node **out)
 				 "over %d nodes; split the scene into several files", NODES_MAX);
 	rc = parse_typed(parser, &token, out);
 	parser->depth--;
-	if (rc == 0 && definition)
+	if (rc == 0 && definition) {
 		definition->node = *out;
+		(*out)->name = name;
+	}
 	return rc;
 }
 

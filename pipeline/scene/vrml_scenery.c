@@ -3,11 +3,11 @@
 #include "pipeline/scene/vrml_scenery.h"
 
 #include <errno.h>
-#include <math.h>
 #include <string.h>
 
 #include "base/map.h"
 #include "geometry/vec.h"
+#include "pipeline/scene/scenery_look.h"
 #include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_graph.h"
 #include "pipeline/scene/vrml_motions.h"
@@ -188,6 +188,17 @@ static void get_material(struct scenery_material *out, uint8_t rgb[3],
 	out->opacity = vec_least(1 - vrml_get_float(material, "transparency", 0), 1);
 }
 
+/* Adds what the content says of a material, by its name or that of its Appearance. */
+static void add_look(const struct walk *walk, struct scenery_material *out, uint8_t rgb[3],
+		     const struct vrml_node *appearance, const struct vrml_node *material)
+{
+	if (!scenery_look_add(walk->maker, material ? material->name : NULL, out) &&
+	    !scenery_look_add(walk->maker, appearance ? appearance->name : NULL, out))
+		return;
+	if (out->substance && !(material && vrml_get(material, "diffuseColor")))
+		scenery_look_mean(rgb, out);
+}
+
 /* What nobody can see is left out. */
 static bool is_visible(const struct scenery_material *material)
 {
@@ -208,6 +219,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	if (!geometry)
 		return 0;
 	get_material(&kept, rgb, material, geometry);
+	add_look(walk, &kept, rgb, look, material);
 	if (material && is_moving(walk, material))
 		kept.opacity = 1; /* its node's */
 	if (!is_visible(&kept))
@@ -219,6 +231,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 		diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
 				"%s has no surface; it was left out", geometry->type->name);
 	if (rc > 0) {
+		scenery_look_grain(&kept, &soup, &walk->maker->out.nodes[walk->root].place);
 		rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles, soup.count,
 					 crease_of(geometry));
 		if (rc < 0)

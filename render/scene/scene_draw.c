@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
+#include "render/scene/scene_around.h"
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_plan.h"
 #include "render/scene/scene_scenery.h"
@@ -443,6 +444,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, passed, out);
+	if (scene_update_around(scene, moved))
+		accumulation_break(&scene->accumulation);
 	if (scene_note_mark(scene, mark))
 		/* it answers a touch, so it must appear at once */
 		accumulation_break(&scene->accumulation);

@@ -78,6 +78,7 @@ struct scene_scenery {
 	struct pose pose;
 	struct scenery_picture picture;
 	bool is_here;
+	uint64_t around_cut; /* state of the cut that mirrors show; 0: none yet */
 };
 
 struct scene {

@@ -34,6 +34,7 @@ void scene_drop_scenery(struct scene *scene)
 	pose_finish(&own->pose);
 	scenery_finish(&own->content);
 	own->is_here = false;
+	own->around_cut = 0;
 }
 
 /* It appears when there are patches to stand on. */

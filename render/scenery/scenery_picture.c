@@ -43,6 +43,22 @@ int scenery_picture_load(struct scenery_picture *picture, const struct scenery *
 	return gl_check("uploading scenery");
 }
 
+int scenery_picture_surround(struct scenery_picture *picture, const struct appearance_cube *around)
+{
+	if (!picture->around)
+		glGenTextures(1, &picture->around);
+	glActiveTexture(GL_TEXTURE0);
+	glBindTexture(GL_TEXTURE_CUBE_MAP, picture->around);
+	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+	for (GLenum i = 0; i < 6; i++)
+		glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + i, 0, GL_RGBA, around->side_px,
+			     around->side_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, around->faces[i]);
+	return gl_check("uploading what mirrors show");
+}
+
 void scenery_picture_drop(struct scenery_picture *picture)
 {
 	GLuint *const buffers[] = { &picture->vertices, &picture->indices, &picture->ordered };
@@ -52,6 +68,9 @@ void scenery_picture_drop(struct scenery_picture *picture)
 			glDeleteBuffers(1, buffers[i]);
 		*buffers[i] = 0;
 	}
+	if (picture->around)
+		glDeleteTextures(1, &picture->around);
+	picture->around = 0;
 	free(picture->offsets);
 	free(picture->triangles);
 	picture->offsets = NULL;
@@ -108,6 +127,7 @@ static void set_frame(const struct scenery_program *p, const struct surface_fram
 	glUniformMatrix4fv(p->clip, 1, GL_FALSE, frame->view->clip);
 	for (size_t i = 0; i < ARRAY_COUNT(p->sun); i++)
 		glUniform4f(p->sun[i], sun[0], sun[1], sun[2], frame->root->lit ? 1 : 0);
+	glUniform1f(p->pixel, 1 / frame->view->focal_px);
 	surface_set_tools(&p->tools, frame);
 }
 
@@ -121,8 +141,31 @@ static void set_material(const struct scenery_program *p, const struct scenery_m
 	const uint8_t *rgb = material->emissive;
 
 	glUniform1f(p->opacity, material->opacity);
+	glUniform1f(p->relief, material->relief_m);
+	glUniform1f(p->mirror, material->mirror);
 	set_colour(p->specular, material->specular, material->shininess);
 	glUniform3f(p->emissive, (float)rgb[0] / 255, (float)rgb[1] / 255, (float)rgb[2] / 255);
+}
+
+/* Sets how the substance lies in the lattice of a mesh. */
+static void set_solid(const struct scenery_program *p, const struct scenery_material *material,
+		      const struct scenery_mesh *mesh, const float matrix[16])
+{
+	struct appearance_solid solid;
+	float place[16] = { 0 };
+
+	if (p->solid < 0)
+		return;
+	appearance_solid_init(&solid, material, matrix);
+	for (int row = 0; row < 3; row++)
+		for (int k = 0; k < 3; k++) {
+			place[4 * k + row] = solid.place[3 * k + row] * mesh->step_m;
+			place[12 + row] += solid.place[3 * k + row] * mesh->origin_m[k];
+		}
+	place[15] = 1;
+	glUniformMatrix4fv(p->solid, 1, GL_FALSE, place);
+	glUniformMatrix3fv(p->slope, 1, GL_FALSE, solid.slope);
+	glUniform3fv(p->tint, 1, solid.tint);
 }
 
 static void set_mesh(const struct scenery_program *p, const struct scenery_mesh *mesh,
@@ -153,7 +196,7 @@ struct drawing {
 	struct scenery_picture *picture;
 	const struct pose *pose;
 	const struct surface_frame *frame;
-	const struct scenery_program *used; /* NULL: none yet */
+	GLuint used; /* program; 0: none yet */
 };
 
 static unsigned features_of(const struct drawing *drawing, const struct scenery_material *material,
@@ -165,7 +208,10 @@ static unsigned features_of(const struct drawing *drawing, const struct scenery_
 	return surface_tools(drawing->frame) |
 	       (dissolve_is_whole(range) ? 0u : (unsigned)SCENERY_DISSOLVES) |
 	       (material->by_pixel ? (unsigned)SCENERY_BY_PIXEL : 0u) |
-	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u);
+	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u) |
+	       (material->relief_m > 0 ? (unsigned)SCENERY_RELIEF : 0u) |
+	       (material->mirror > 0 && drawing->picture->around ? (unsigned)SCENERY_MIRROR : 0u) |
+	       (unsigned)SCENERY_SUBSTANCE * material->substance;
 }
 
 static bool is_seen(const struct drawing *drawing, uint32_t mesh)
@@ -197,10 +243,11 @@ static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
 
 	if (!p)
 		return false;
-	if (p != drawing->used)
+	if (p->program != drawing->used)
 		set_frame(p, drawing->frame);
-	drawing->used = p;
+	drawing->used = p->program;
 	set_material(p, material);
+	set_solid(p, material, of, node->matrix);
 	set_mesh(p, of, node, drawing->frame, material->has_two_sides);
 	glVertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, stride,
 			      (void *)(first + offsetof(struct scenery_vertex, place)));
@@ -283,6 +330,8 @@ void scenery_picture_draw(struct scenery_picture *picture, const struct pose *po
 	struct drawing drawing = { .picture = picture, .pose = pose, .frame = frame };
 	const struct scenery *scenery = pose->scenery;
 
+	glActiveTexture(GL_TEXTURE0);
+	glBindTexture(GL_TEXTURE_CUBE_MAP, picture->around);
 	glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->indices);
 	for (GLuint i = 0; i < 3; i++)

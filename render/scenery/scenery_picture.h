@@ -3,24 +3,33 @@
 #ifndef GOPURA_RENDER_SCENERY_SCENERY_PICTURE_H
 #define GOPURA_RENDER_SCENERY_SCENERY_PICTURE_H
 
+#include "geometry/appearance.h"
 #include "render/scenery/pose.h"
 #include "render/scenery/scenery_order.h"
 #include "render/scenery/scenery_program.h"
+
+/* Where a mesh is in the buffers. */
+struct scenery_offset {
+	size_t vertex_bytes, index_bytes;
+};
 
 /* Zeroed is empty: nothing is built before there is scenery. */
 struct scenery_picture {
 	struct scenery_programs programs;
 	GLuint vertices, indices;
-	GLuint ordered;             /* indices of transparent triangles, of the last frame */
-	uint16_t (*triangles)[3];   /* the same before they are uploaded; owned */
-	struct scenery_order order; /* of the last frame */
-	struct scenery_offset {
-		size_t vertex_bytes, index_bytes; /* in the buffers */
-	} * offsets;                              /* of each mesh; owned */
+	GLuint ordered;                 /* indices of transparent triangles, of the last frame */
+	uint16_t (*triangles)[3];       /* the same before they are uploaded; owned */
+	struct scenery_order order;     /* of the last frame */
+	struct scenery_offset *offsets; /* of each mesh; owned */
+	GLuint around;                  /* cube map of what mirrors show; 0: nothing yet. Owned */
 };
 
 /* Uploads the meshes in place of any before. -ENOMEM, or as gl_check. */
 must_check int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery);
+/* Takes the six faces of what mirrors show, as geometry/appearance.h has them. Errors as gl_check.
+ */
+must_check int scenery_picture_surround(struct scenery_picture *picture,
+					const struct appearance_cube *around);
 /* Frees the meshes. */
 void scenery_picture_drop(struct scenery_picture *picture);
 /* Frees everything. */

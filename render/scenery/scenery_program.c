@@ -1,11 +1,16 @@
 /* Holds the GLSL of scenery and builds it by features. */
 #include "render/scenery/scenery_program.h"
 
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 
+#include "base/array.h"
 #include "base/compiler.h"
 #include "geometry/appearance.h"
 #include "geometry/light.h"
+#include "geometry/noise.h"
+#include "geometry/substance.h"
 
 /* Where the light is computed, in the vertex or in the fragment shader; each uniform is in one of
  * them only, because their precisions differ. */
@@ -14,10 +19,51 @@ static const char shade[] =
 	"uniform vec4 u_specular;\n" /* colour, exponent */
 	"uniform vec3 u_emissive;\n"
 	"#endif\n"
+	"#if defined(SOLID) || defined(RELIEF)\n"
+	"uniform float u_pixel;\n" /* its size at a metre */
+	"varying vec3 v_solid;\n"
+	"#endif\n"
+	"#ifdef SOLID\n"
+	"uniform vec3 u_tint;\n"
+	"#endif\n"
+	"#ifdef RELIEF\n"
+	"uniform mat3 u_slope;\n"
+	"uniform float u_relief;\n"
+	"vec3 bent(vec3 n, float size) {\n"
+	"	vec2 step = vec2(max(size, 0.001), 0.0);\n"
+	"	float here = relief_height(v_solid, size);\n"
+	"	vec3 beside = vec3(relief_height(v_solid + step.xyy, size),\n"
+	"			   relief_height(v_solid + step.yxy, size),\n"
+	"			   relief_height(v_solid + step.yyx, size));\n"
+	"	vec3 slope = u_slope * ((beside - here) / step.x);\n"
+	"	return normalize(n - u_relief * (slope - n * dot(slope, n)));\n"
+	"}\n"
+	"#endif\n"
+	"#ifdef MIRROR\n"
+	"uniform samplerCube u_around;\n"
+	"uniform float u_mirror;\n"
+	"#endif\n"
 	"vec3 shaded(vec3 surface, vec3 n, vec3 p, vec4 sun) {\n"
-	"	vec3 colour = surface * (sun.w > 0.5 ? light(n, 1.0, sun.xyz) : 1.0);\n"
+	"	vec3 to_eye = normalize(-p);\n"
+	"#if defined(SOLID) || defined(RELIEF)\n"
+	"	float size = length(p) * u_pixel;\n"
+	"#endif\n"
+	"#ifdef SOLID\n"
+	"	surface *= u_tint * SOLID(v_solid.x, v_solid.y, v_solid.z, size);\n"
+	"#endif\n"
+	"	float before = sun.w > 0.5 ? 1.0 : light(n, 1.0, sun.xyz);\n"
+	"#ifdef RELIEF\n"
+	"	n = bent(n, size);\n"
+	"#endif\n"
+	"	vec3 colour = surface * (light(n, 1.0, sun.xyz) / before);\n"
 	"#ifdef GLOSSY\n"
-	"	colour += u_emissive + u_specular.rgb * highlight(n, normalize(-p), sun.xyz,\n"
+	"	colour += u_emissive;\n"
+	"#endif\n"
+	"#ifdef MIRROR\n"
+	"	colour = mix(colour, textureCube(u_around, reflect(-to_eye, n)).rgb, u_mirror);\n"
+	"#endif\n"
+	"#ifdef GLOSSY\n"
+	"	colour += u_specular.rgb * highlight(n, to_eye, sun.xyz,\n"
 	"							  u_specular.a);\n"
 	"#endif\n"
 	"	return min(colour, 1.0);\n"
@@ -32,7 +78,14 @@ static const char vertex[] =
 	"#ifdef BY_PIXEL\n"
 	"varying vec3 v_normal, v_place;\n"
 	"#endif\n"
+	"#if defined(SOLID) || defined(RELIEF)\n"
+	"uniform mat4 u_solid;\n"
+	"varying vec3 v_solid;\n"
+	"#endif\n"
 	"void main() {\n"
+	"#if defined(SOLID) || defined(RELIEF)\n"
+	"	v_solid = (u_solid * vec4(a_position, 1.0)).xyz;\n"
+	"#endif\n"
 	"	vec3 p = (u_model * vec4(a_position, 1.0)).xyz;\n"
 	"	vec3 e = unit_normal();\n"
 	"	vec3 n = normalize(u_turned[0] * e.x + u_turned[1] * e.y + u_turned[2] * e.z);\n"
@@ -81,54 +134,117 @@ static void find_uniforms(struct scenery_program *p)
 	p->specular = glGetUniformLocation(p->program, "u_specular");
 	p->emissive = glGetUniformLocation(p->program, "u_emissive");
 	p->opacity = glGetUniformLocation(p->program, "u_opacity");
+	p->solid = glGetUniformLocation(p->program, "u_solid");
+	p->slope = glGetUniformLocation(p->program, "u_slope");
+	p->tint = glGetUniformLocation(p->program, "u_tint");
+	p->relief = glGetUniformLocation(p->program, "u_relief");
+	p->mirror = glGetUniformLocation(p->program, "u_mirror");
+	p->pixel = glGetUniformLocation(p->program, "u_pixel");
 	surface_find_tools(&p->tools, p->program);
 }
 
-static int build(struct scenery_program *p, unsigned features)
+/* Writes what the texts ask for. */
+static void define(char *out, size_t bytes, unsigned features)
 {
-	const unsigned tools = features % SURFACE_TOOLS;
-	const bool by_pixel = features & SCENERY_BY_PIXEL, rakes = tools & SURFACE_RAKE;
-	const char *const none = "";
-	char defines[80];
+	const unsigned kind = features / SCENERY_SUBSTANCE;
+	char solid[40] = "";
+
+	if (kind > 0)
+		snprintf(solid, sizeof(solid), "#define SOLID %s_colour\n", substance_names[kind]);
+	snprintf(out, bytes, "%s%s%s%s%s%s", surface_defines[features % SURFACE_TOOLS],
+		 features & SCENERY_BY_PIXEL ? "#define BY_PIXEL\n" : "",
+		 features & SCENERY_GLOSSY ? "#define GLOSSY\n" : "",
+		 features & SCENERY_RELIEF ? "#define RELIEF\n" : "",
+		 features & SCENERY_MIRROR ? "#define MIRROR\n" : "", solid);
+}
+
+/* Returns a text if it is needed. */
+static const char *where(bool is_needed, const char *text)
+{
+	return is_needed ? text : "";
+}
+
+static int build(struct scenery_program *p)
+{
+	const unsigned features = p->features;
+	const bool by_pixel = features & SCENERY_BY_PIXEL, rakes = features & SURFACE_RAKE;
+	const bool has_relief = features & SCENERY_RELIEF;
+	const bool has_noise = has_relief || features >= SCENERY_SUBSTANCE;
+	char defines[200];
 	int rc;
 
-	snprintf(defines, sizeof(defines), "%s%s%s", surface_defines[tools],
-		 by_pixel ? "#define BY_PIXEL\n" : "",
-		 features & SCENERY_GLOSSY ? "#define GLOSSY\n" : "");
-	const struct gl_program_source source = {
-		.name = "scenery",
-		.vertex =
-			(const char *const[]){ defines, light_glsl, appearance_glsl,
-					       rakes ? rake_vertex_glsl : none, surface_vertex_glsl,
-					       by_pixel ? none : shade, vertex, NULL },
-		.fragment =
-			(const char *const[]){
-				by_pixel ? gl_fine_fragment : "precision mediump float;\n", defines,
-				light_glsl, appearance_glsl, appearance_fog_glsl,
-				rakes ? rake_fragment_glsl : none, surface_tools_glsl,
-				features & SCENERY_DISSOLVES ? surface_dissolve_glsl
-							     : surface_whole_glsl,
-				by_pixel ? shade : none, fragment, NULL },
-		.attributes = surface_attributes,
+	define(defines, sizeof(defines), features);
+	const char *const vertex_parts[] = { defines,
+					     light_glsl,
+					     appearance_glsl,
+					     where(rakes, rake_vertex_glsl),
+					     surface_vertex_glsl,
+					     where(!by_pixel, shade),
+					     vertex,
+					     NULL };
+	const char *const fragment_parts[] = {
+		by_pixel ? gl_fine_fragment : "precision mediump float;\n",
+		defines,
+		light_glsl,
+		appearance_glsl,
+		where(has_noise, noise_glsl),
+		where(has_noise, substance_glsl),
+		where(has_relief, appearance_relief_glsl),
+		appearance_fog_glsl,
+		where(rakes, rake_fragment_glsl),
+		surface_tools_glsl,
+		features & SCENERY_DISSOLVES ? surface_dissolve_glsl : surface_whole_glsl,
+		where(by_pixel, shade),
+		fragment,
+		NULL
 	};
+	const struct gl_program_source source = { .name = "scenery",
+						  .vertex = vertex_parts,
+						  .fragment = fragment_parts,
+						  .attributes = surface_attributes };
 	rc = gl_program_build(&p->program, &source);
-	if (rc == 0)
-		find_uniforms(p);
-	return rc;
+	if (rc < 0)
+		return rc;
+	find_uniforms(p);
+	if (features & SCENERY_MIRROR) {
+		glUseProgram(p->program);
+		glUniform1i(glGetUniformLocation(p->program, "u_around"), 0);
+	}
+	return 0;
+}
+
+/* Returns the program, built or refused; NULL: memory is short. */
+static struct scenery_program *find(struct scenery_programs *programs, unsigned features)
+{
+	struct scenery_program *p;
+
+	for (uint32_t i = 0; i < programs->count; i++)
+		if (programs->all[i].features == features)
+			return &programs->all[i];
+	if (ARRAY_RESERVE(programs->all, programs->room, (uint64_t)programs->count + 1,
+			  SCENERY_FEATURES) < 0)
+		return NULL;
+	p = &programs->all[programs->count++];
+	*p = (struct scenery_program){ .features = features };
+	if (build(p) < 0)
+		p->program = 0;
+	return p;
 }
 
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
 						   unsigned features)
 {
+	if (!gl_has_highp())
+		features %= SCENERY_SUBSTANCE;
+	if (!gl_has_highp())
+		features &= ~(unsigned)SCENERY_RELIEF;
 	const unsigned less[] = { features, features % SCENERY_BY_PIXEL,
 				  features & SCENERY_DISSOLVES };
 
 	for (size_t i = 0; i < ARRAY_COUNT(less); i++) {
-		struct scenery_program *p = &programs->of[less[i]];
+		const struct scenery_program *p = find(programs, less[i]);
 
-		if (!p->program && !p->is_lacking)
-			p->is_lacking = build(p, less[i]) < 0;
-		if (!p->is_lacking)
+		if (p && p->program)
 			return p;
 	}
 	return NULL;
@@ -136,8 +252,9 @@ const struct scenery_program *scenery_programs_get(struct scenery_programs *prog
 
 void scenery_programs_finish(struct scenery_programs *programs)
 {
-	for (int i = 0; i < SCENERY_FEATURES; i++)
-		if (programs->of[i].program)
-			glDeleteProgram(programs->of[i].program);
+	for (uint32_t i = 0; i < programs->count; i++)
+		if (programs->all[i].program)
+			glDeleteProgram(programs->all[i].program);
+	free(programs->all);
 	*programs = (struct scenery_programs){ 0 };
 }

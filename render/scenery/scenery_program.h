@@ -3,31 +3,38 @@
 #ifndef GOPURA_RENDER_SCENERY_SCENERY_PROGRAM_H
 #define GOPURA_RENDER_SCENERY_SCENERY_PROGRAM_H
 
+#include "format/scenery.h"
 #include "render/lumigraph/surface.h"
 
 /* What a program has beside the tools (SURFACE_TOOLS). */
 enum {
 	SCENERY_DISSOLVES = SURFACE_TOOLS,    /* discards pixels outside a range */
-	SCENERY_BY_PIXEL = 2 * SURFACE_TOOLS, /* light at each pixel */
+	SCENERY_BY_PIXEL = 2 * SURFACE_TOOLS, /* light at each pixel; needed for what follows */
 	SCENERY_GLOSSY = 4 * SURFACE_TOOLS,   /* has a highlight, or shines by itself */
-	SCENERY_FEATURES = 8 * SURFACE_TOOLS,
+	SCENERY_RELIEF = 8 * SURFACE_TOOLS,
+	SCENERY_MIRROR = 16 * SURFACE_TOOLS,
+	SCENERY_SUBSTANCE = 32 * SURFACE_TOOLS, /* times enum substance_kind */
+	SCENERY_FEATURES = SCENERY_SUBSTANCE * SCENERY_SUBSTANCES,
 };
 
 struct scenery_program {
-	GLuint program;  /* 0: not built yet */
-	bool is_lacking; /* the driver refused it */
+	unsigned features;
+	GLuint program; /* 0: the driver refused it */
 	GLint clip, model, normal, sides, sun[2], range, specular, emissive, opacity;
+	GLint solid, slope, tint, relief, mirror, pixel;
 	struct surface_tool_uniforms tools;
 };
 
 /* Zeroed is empty. */
 struct scenery_programs {
-	struct scenery_program of[SCENERY_FEATURES];
+	struct scenery_program *all; /* owned */
+	uint32_t count, room;
 };
 
 /* Returns the program with those features, bits of the above and of SURFACE_TOOLS; it is built
- * where it is missing. What the driver refuses is drawn without its material, then without tools;
- * NULL: it refuses that too. */
+ * where it is missing. Borrowed until the next call. What the driver refuses is drawn without its
+ * material, then without tools; NULL: it refuses that too, or memory is short. Substances and
+ * relief need fragments with highp; without, they are left out. */
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
 						   unsigned features);
 void scenery_programs_finish(struct scenery_programs *programs); /* zeroed is fine */

@@ -61,7 +61,7 @@ static inline void little_scenery_init(struct little_scenery *s)
 	*s = (struct little_scenery){
 		.nodes = { little_node(SCENERY_NONE, SCENERY_NONE), little_node(0, SCENERY_NONE),
 			   little_node(SCENERY_NONE, 1) },
-		.material = { .has_two_sides = true, .opacity = 1 },
+		.material = { .has_two_sides = true, .opacity = 1, .grain = { 0, 0, 1 } },
 		.motion = { .duration_s = 2, .returns = true, .track_count = 2 },
 		.touch = { .node = 0, .motion = 0 },
 		.tracks = { { .node = 1, .target = SCENERY_TURN, .key_count = 2 },

@@ -24,7 +24,18 @@ static void comes_back_as_it_went(void **state)
 
 	(void)state;
 	little_scenery_init(&s);
-	s.material = (struct scenery_material){ true, true, 0.5f, { 0, 7 }, { 0, 0, 9 }, 40 };
+	s.material = (struct scenery_material){
+		.has_two_sides = true,
+		.by_pixel = true,
+		.opacity = 0.5f,
+		.emissive = { 0, 7 },
+		.specular = { 0, 0, 9 },
+		.shininess = 40,
+		.substance = 2,
+		.relief_m = 0.01f,
+		.mirror = 0.25f,
+		.grain = { 1, 0, 0 },
+	};
 	s.scenery.fog = (struct scenery_fog){ 30, true, { 11 }, 1 };
 	bytes = encoded(&s.scenery);
 	CHECK(scenery_decode(&back, buffer_bytes(&bytes)) == 0);
@@ -35,6 +46,8 @@ static void comes_back_as_it_went(void **state)
 	CHECK(back.material_count == 1 && back.materials[0].by_pixel &&
 	      back.materials[0].opacity == 0.5f && back.materials[0].emissive[1] == 7 &&
 	      back.materials[0].specular[2] == 9 && back.materials[0].shininess == 40);
+	CHECK(back.materials[0].substance == 2 && back.materials[0].relief_m == 0.01f &&
+	      back.materials[0].mirror == 0.25f && back.materials[0].grain[0] == 1);
 	CHECK(back.fog.range_m == 30 && back.fog.is_exponential && back.fog.rgb[0] == 11 &&
 	      back.fog.layer == 1);
 	CHECK(memcmp(back.meshes[1].vertices, s.vertices[1], sizeof(s.vertices[1])) == 0);
@@ -120,6 +133,19 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	s.material.specular[1] = 1; /* and no shininess */
 	CHECK(!is_written(&s));
 	s.material.shininess = 129;
+	CHECK(!is_written(&s));
+	s.material.substance = 2; /* without light at each pixel */
+	CHECK(!is_written(&s));
+	s.material.by_pixel = true;
+	s.material.substance = SCENERY_SUBSTANCES;
+	CHECK(!is_written(&s));
+	s.material.by_pixel = true;
+	s.material.relief_m = 0.2f;
+	CHECK(!is_written(&s));
+	s.material.by_pixel = true;
+	s.material.mirror = -1;
+	CHECK(!is_written(&s));
+	s.material.grain[0] = 1; /* not a unit vector any more */
 	CHECK(!is_written(&s));
 	s.scenery.fog = (struct scenery_fog){ .range_m = 9, .layer = 2 }; /* no such layer */
 	CHECK(!is_written(&s));

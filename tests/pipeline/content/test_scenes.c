@@ -94,7 +94,7 @@ static void every_fault_names_its_line(void **state)
 		{ "{\"scenes\": [\n{\"file\": \"../box.wrl\"}]}",
 		  "scenes.json:2: \"file\" must be in the folder scenes: \"scenes/NAME.wrl\"" },
 		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"layr\": \"a\"}]}",
-		  "scenes.json:2: \"layr\" is not one of its keys, which are: file layer up unit " },
+		  "scenes.json:2: \"layr\" is not one of its keys, which are: file layer up unit scene plays materials " },
 		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"layer\": \"a\"}]}",
 		  "scenes.json:2: layer \"a\" is not one of \"layers\"; correct its name" },
 		{ "{\"scenes\": [{\"file\": \"scenes/box.wrl\"}],\n"
@@ -102,6 +102,21 @@ static void every_fault_names_its_line(void **state)
 		  "{\"id\": \"b\", \"title\": {\"km\": \"B\"}}]}",
 		  "scenes.json:3: a layer has no title in \"en\", the first language: add \"title\": "
 		  "{\"en\": \"...\"}" },
+		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"materials\": {\n\"A\": {}}}]}",
+		  "scenes.json:2: no material of scenes/box.wrl is called \"A\": correct the name" },
+		{ "{\"scenes\": [{\"file\": \"scenes/box.wrl\", \"materials\": {\n"
+		  "\"A\": {\"substance\": \"granite\"}}}]}",
+		  "scenes.json:2: \"substance\" must be marble, wood, sandstone, laterite or none, "
+		  "not \"granite\"" },
+		{ "{\"scenes\": [{\"file\": \"scenes/box.wrl\", \"materials\": {\n"
+		  "\"A\": {\"relief\": 3}}}]}",
+		  "scenes.json:2: \"relief\" must be a number from 0 to 0.1" },
+		{ "{\"scenes\": [{\"file\": \"scenes/box.wrl\", \"materials\": {\n"
+		  "\"A\": {\"shine\": 3}}}]}",
+		  "scenes.json:2: \"shine\" is not one of its keys, which are: substance relief "
+		  "mirror " },
+		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"materials\": 3}]}",
+		  "scenes.json:2: \"materials\" must be {\"NAME\": {...}} with at most 64 names" },
 		{ "{\"scenes\": [{\"file\": \"scenes/bad.wrl\"}]}", "bad.wrl:3: Script" },
 		{ "{\"scenes\": [\n{\"file\": \"scenes/box.wrl\", \"plays\": \"twice\"}]}",
 		  "scenes.json:2: \"plays\" must be \"touch\"" },

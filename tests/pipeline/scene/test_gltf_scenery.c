@@ -61,7 +61,8 @@ static int make(struct scenery *out, const char *lists, const struct gltf_choice
 					   .place = scenery_at_rest };
 	const struct gltf_options options = { 0 };
 	char base64[512], text[DOCUMENT_BYTES];
-	struct scenery_maker maker = { 0 };
+	struct scenery_look beam = { .name = "beam", .substance = SUBSTANCE_WOOD };
+	struct scenery_maker maker = { .looks = &beam, .look_count = 1 };
 	struct gltf gltf;
 	uint32_t node = 0;
 	int rc;
@@ -184,6 +185,34 @@ static void a_spline_is_followed_closely(void **state)
 	scenery_finish(&s);
 }
 
+/* Gold, as smooth as it is metal; wood that the content names; and what glTF means without a word.
+ */
+static void a_smooth_metal_shines_and_a_named_material_is_wood(void **state)
+{
+	static const char three[] = ACCESSORS
+		"\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, \"material\": 0},"
+		"{\"attributes\": {\"POSITION\": 0}, \"material\": 1},"
+		"{\"attributes\": {\"POSITION\": 0}, \"material\": 2}]}],\n"
+		"\"materials\": [{\"pbrMetallicRoughness\": {\"roughnessFactor\": 0.5,"
+		"\"baseColorFactor\": [1, 0.5, 0, 1]}}, {\"name\": \"beam\"}, {}],\n"
+		"\"nodes\": [{\"mesh\": 0}], \"scenes\": [{\"nodes\": [0]}]";
+	const struct gltf_choice choice = { 0 };
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const struct scenery_material *m;
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, three, &choice, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.material_count == 3);
+	m = s.materials;
+	CHECK(m[0].by_pixel && m[0].shininess == 30 && fabsf(m[0].mirror - 0.3f) < 1e-6f);
+	CHECK(m[0].specular[0] > m[0].specular[1] && m[0].specular[2] == 0);
+	CHECK(m[1].substance == SUBSTANCE_WOOD && m[1].by_pixel && m[1].mirror == 0);
+	CHECK(s.meshes[1].vertices[0].rgb[0] > s.meshes[1].vertices[0].rgb[2] + 30); /* brown */
+	CHECK(!m[2].by_pixel && m[2].shininess == 0 && m[2].mirror == 0);
+	scenery_finish(&s);
+}
+
 static void a_scene_is_chosen_by_its_name(void **state)
 {
 	const struct gltf_choice b = { .scene = "b" }, c = { .scene = "c" };
@@ -288,6 +317,7 @@ int main(void)
 		cmocka_unit_test(what_plays_always_loops_and_needs_no_touch),
 		cmocka_unit_test(a_step_keeps_each_value_until_the_next_time),
 		cmocka_unit_test(a_spline_is_followed_closely),
+		cmocka_unit_test(a_smooth_metal_shines_and_a_named_material_is_wood),
 		cmocka_unit_test(a_scene_is_chosen_by_its_name),
 		cmocka_unit_test(what_is_refused_names_place_and_cure),
 		cmocka_unit_test(a_glb_is_read_whole_or_not_at_all),

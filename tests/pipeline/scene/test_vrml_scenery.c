@@ -23,15 +23,16 @@ static const char door[] =
 	     "ROUTE C.fraction_changed TO O.set_fraction\n"
 	     "ROUTE O.value_changed TO Hinge.rotation\n";
 
-static int make(struct scenery *out, const char *text, struct diagnostics *diagnostics,
-		struct diagnostics *warnings)
+static int make_with(struct scenery *out, const char *text, struct scenery_look *looks,
+		     uint32_t look_count, struct diagnostics *diagnostics,
+		     struct diagnostics *warnings)
 {
 	const struct scenery_node root = { .parent = SCENERY_NONE,
 					   .layer = SCENERY_NONE,
 					   .place = scenery_at_rest };
 	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
 	const struct vrml_options options = { 0 };
-	struct scenery_maker maker = { 0 };
+	struct scenery_maker maker = { .looks = looks, .look_count = look_count };
 	struct vrml *scene = NULL;
 	uint32_t node = 0;
 	int rc = vrml_read(&scene, bytes, "a.wrl", &options, diagnostics, warnings);
@@ -45,6 +46,12 @@ static int make(struct scenery *out, const char *text, struct diagnostics *diagn
 	scenery_maker_finish(&maker);
 	vrml_destroy(scene);
 	return rc;
+}
+
+static int make(struct scenery *out, const char *text, struct diagnostics *diagnostics,
+		struct diagnostics *warnings)
+{
+	return make_with(out, text, NULL, 0, diagnostics, warnings);
 }
 
 static void a_door_turns_on_its_hinge_when_it_is_touched(void **state)
@@ -159,6 +166,41 @@ static void the_first_fog_is_kept_in_metres(void **state)
 	scenery_finish(&s);
 }
 
+/* A lying beam and a post of one wood, which is called so in a prototype; and stone, by the name of
+ * its Appearance, in its own colour. */
+static void a_named_material_has_the_substance_that_the_content_says(void **state)
+{
+	static const char named[] =
+		HEAD "PROTO Beam [ field SFVec3f measure 1 1 1 ] { Shape { geometry Box { size IS\n"
+		     "  measure } appearance Appearance { material DEF Timber Material {\n"
+		     "  diffuseColor 1 0 0 } } } }\n"
+		     "Beam { measure 4 0.2 0.2 }\n"
+		     "Transform { rotation 0 0 1 1.5708 children Beam { measure 4 0.2 0.2 } }\n"
+		     "Shape { geometry Box {} appearance DEF Block Appearance {} }\n"
+		     "Shape { geometry Box {} appearance DEF Other Appearance {} }";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery_look looks[] = {
+		{ .name = "Timber", .substance = SUBSTANCE_WOOD, .relief_m = 0.002f },
+		{ .name = "Block", .substance = SUBSTANCE_LATERITE, .mirror = 0.5f },
+		{ .name = "Nobody" },
+	};
+	const struct scenery_material *m;
+	struct scenery s;
+
+	(void)state;
+	CHECK(make_with(&s, named, looks, 3, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(looks[0].is_used && looks[1].is_used && !looks[2].is_used);
+	CHECK(s.material_count == 4 && s.mesh_count == 4);
+	m = s.materials;
+	CHECK(m[0].substance == SUBSTANCE_WOOD && m[0].relief_m == 0.002f && m[0].by_pixel);
+	CHECK(fabsf(m[0].grain[0]) > 0.999f && fabsf(m[1].grain[1]) > 0.999f);
+	CHECK(s.meshes[0].vertices[0].rgb[0] == 255 && s.meshes[0].vertices[0].rgb[1] == 0);
+	CHECK(m[2].substance == SUBSTANCE_LATERITE && m[2].mirror == 0.5f && m[2].grain[2] == 1);
+	CHECK(s.meshes[2].vertices[0].rgb[0] > 1.5f * s.meshes[2].vertices[0].rgb[2]); /* red */
+	CHECK(m[3].substance == 0 && !m[3].by_pixel);
+	scenery_finish(&s);
+}
+
 static void what_is_not_kept_is_named_with_its_line(void **state)
 {
 	static const struct {
@@ -218,6 +260,7 @@ int main(void)
 		cmocka_unit_test(what_becomes_transparent_is_a_node),
 		cmocka_unit_test(a_material_is_kept_with_its_highlight_and_transparency),
 		cmocka_unit_test(the_first_fog_is_kept_in_metres),
+		cmocka_unit_test(a_named_material_has_the_substance_that_the_content_says),
 		cmocka_unit_test(what_is_not_kept_is_named_with_its_line),
 		cmocka_unit_test(an_interpolator_without_sense_is_refused),
 	};

@@ -11,6 +11,7 @@
 #include "geometry/view.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
+#include "render/scene/scene_around.h"
 #include "render/scene/scene_parts.h"
 #include "tests/format/little_scenery.h"
 #include "tests/render/scene/little_stream.h"
@@ -284,6 +285,57 @@ static void fog_hides_by_distance(void **state)
 	CHECK(differing(clear) < PIXELS / 400);
 }
 
+/* Reads the middle of a face of the cube map, and says whether the scan is there. */
+static bool shows_scan(int face)
+{
+	const uint8_t *sky = stage.scene->root.background;
+	uint8_t pixel[4];
+	GLuint buffer;
+
+	glGenFramebuffers(1, &buffer);
+	glBindFramebuffer(GL_FRAMEBUFFER, buffer);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0,
+			       GL_TEXTURE_CUBE_MAP_POSITIVE_X + (GLenum)face,
+			       stage.scene->scenery.picture.around, 0);
+	CHECK(glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
+	glReadPixels(SCENE_AROUND_PX / 2, SCENE_AROUND_PX / 2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE,
+		     pixel);
+	glDeleteFramebuffers(1, &buffer);
+	return memcmp(pixel, sky, 3) != 0;
+}
+
+/* The door, made a mirror, looks to -y, away from the pillars behind it. */
+static void a_mirror_shows_scan_and_sky(void **state)
+{
+	struct scenery *s = &stage.scene->scenery.content;
+	float direction[3], point[3], at[2];
+	const uint8_t *sky, *pixel;
+
+	(void)state;
+	settle("dull");
+	CHECK(stage.scene->scenery.picture.around == 0); /* nothing needs it */
+	for (uint32_t i = 0; i < s->material_count; i++) {
+		s->materials[i].by_pixel = true;
+		s->materials[i].mirror = 1;
+	}
+	draw_again();
+	settle("mirror");
+	CHECK(!shows_scan(4) && shows_scan(5)); /* sky above, ground below */
+	/* A place high on the door shows what is behind the eye, which is sky. */
+	sky = stage.scene->root.background;
+	project(1.5f, -6, 2.9f, at);
+	pixel = &stage.seen[4 * ((int)at[1] * WIDTH + (int)at[0])];
+	for (int k = 0; k < 3; k++)
+		CHECK(abs(pixel[k] - sky[k]) < 8);
+	/* Seen from above, its foot shows ground: the ray goes down, before the door. */
+	vec_sub(direction, (float[3]){ 0.2f, -6, 0.1f }, eye.eye_m);
+	direction[1] = -direction[1];
+	vec_normalise(direction);
+	vec_add_scaled(point, (float[3]){ 1.5f, -6, 1.5f }, 1, direction);
+	CHECK(point[2] < 1.5f);
+	CHECK(!is_wood(0.2f, -6, 0.1f));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -292,6 +344,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_pillar_in_front_hides_the_second_layer,
 						raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_section_cuts_it_too, raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_mirror_shows_scan_and_sky, raise_stage,
+						strike_stage),
 		cmocka_unit_test_setup_teardown(fog_hides_by_distance, raise_stage, strike_stage),
 	};
 	int failed;

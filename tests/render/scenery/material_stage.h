@@ -39,6 +39,8 @@ static inline struct scenery_mesh *stage_mesh(struct scenery *s,
 
 	CHECK(s->mesh_count <= STAGE_MESHES_MAX);
 	s->materials[s->material_count] = *material;
+	if (vec_length(material->grain) < 0.5f)
+		s->materials[s->material_count].grain[2] = 1;
 	mesh->material = s->material_count++;
 	mesh->step_m = side_m / STAGE_LATTICE;
 	for (int k = 0; k < 3; k++)

@@ -20,7 +20,8 @@ enum { SOFTWARE_HITS_MAX = 64 };
 /* A triangle in metres from the eye. */
 struct software_triangle {
 	const struct scenery_material *material;
-	float corners[3][3], normals[3][3], colours[3][3];
+	struct appearance_solid solid;
+	float corners[3][3], normals[3][3], colours[3][3], places[3][3]; /* places: in the node */
 };
 
 struct software_hit {
@@ -33,7 +34,7 @@ struct software_picture {
 	const struct scenery *scenery; /* borrowed, as the next two */
 	const struct view *view;
 	const struct root_page *root;
-	struct appearance_sun sun;
+	struct appearance_light light;
 	struct software_triangle *triangles; /* owned */
 	uint32_t count;
 };
@@ -64,9 +65,11 @@ static inline void software_add(struct software_picture *p, const struct pose *p
 	const float *m = pose->nodes[mesh->node].matrix;
 
 	out->material = &p->scenery->materials[mesh->material];
+	appearance_solid_init(&out->solid, out->material, m);
 	for (int k = 0; k < 3; k++) {
 		const struct scenery_vertex *v = &mesh->vertices[mesh->triangles[triangle][k]];
-		float at[3], normal[3], n[3], to_eye[3], surface[3];
+		struct appearance_place place = { .footprint_m = 0 };
+		float normal[3], *at = out->places[k], *n = place.normal, *surface = place.surface;
 
 		for (int i = 0; i < 3; i++) {
 			at[i] = mesh->origin_m[i] + mesh->step_m * v->place[i];
@@ -79,24 +82,26 @@ static inline void software_add(struct software_picture *p, const struct pose *p
 		vec_copy(out->colours[k], surface);
 		if (out->material->by_pixel)
 			continue;
-		vec_scale(to_eye, -1, out->corners[k]);
-		vec_normalise(to_eye);
+		vec_scale(place.to_eye, -1, out->corners[k]);
+		vec_normalise(place.to_eye);
 		vec_copy(n, out->normals[k]);
-		if (out->material->has_two_sides && vec_dot(n, to_eye) < 0)
+		if (out->material->has_two_sides && vec_dot(n, place.to_eye) < 0)
 			vec_scale(n, -1, n);
-		appearance_colour(out->colours[k], out->material, surface, n, to_eye, &p->sun);
+		appearance_colour(out->colours[k], out->material, NULL, &place, &p->light);
 	}
 }
 
 /* Everything is borrowed for the lifetime; ends with software_finish. */
 static inline void software_init(struct software_picture *p, const struct pose *pose,
-				 const struct view *view, const struct root_page *root)
+				 const struct view *view, const struct root_page *root,
+				 const struct appearance_cube *around)
 {
 	const struct scenery *scenery = pose->scenery;
 
 	*p = (struct software_picture){ .scenery = scenery, .view = view, .root = root };
-	vec_copy(p->sun.towards, root->sun);
-	p->sun.is_lit = root->lit;
+	vec_copy(p->light.sun, root->sun);
+	p->light.is_lit = root->lit;
+	p->light.around = around;
 	p->triangles = calloc(scenery_triangles(scenery), sizeof(*p->triangles));
 	CHECK(p->triangles);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
@@ -143,16 +148,18 @@ static inline void software_shade(float rgb[3], const struct software_picture *p
 {
 	const struct software_triangle *t = hit->of;
 	const struct scenery_fog *fog = &p->scenery->fog;
-	float surface[3], normal[3], to_eye[3], colour[3];
+	struct appearance_place place = { .footprint_m = hit->distance / p->view->focal_px };
+	float colour[3];
 
-	software_mix(surface, t->colours, hit->share);
-	vec_copy(rgb, surface);
+	software_mix(place.surface, t->colours, hit->share);
+	vec_copy(rgb, place.surface);
 	if (t->material->by_pixel) {
-		software_mix(normal, t->normals, hit->share);
-		vec_scale(normal, hit->is_back ? -1 : 1, normal);
-		vec_normalise(normal);
-		vec_scale(to_eye, -1, direction);
-		appearance_colour(rgb, t->material, surface, normal, to_eye, &p->sun);
+		software_mix(place.normal, t->normals, hit->share);
+		vec_scale(place.normal, hit->is_back ? -1 : 1, place.normal);
+		vec_normalise(place.normal);
+		software_mix(place.in_node, t->places, hit->share);
+		vec_scale(place.to_eye, -1, direction);
+		appearance_colour(rgb, t->material, &t->solid, &place, &p->light);
 	}
 	if (!(fog->range_m > 0))
 		return;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "format/picture.h"
+#include "geometry/substance.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 #include "render/scenery/scenery_picture.h"
@@ -94,7 +95,7 @@ static void make_row(struct scenery *s, bool is_exponential)
 {
 	for (int i = 0; i < 5; i++)
 		stage_ball(s, &(struct scenery_material){ .opacity = 1 },
-			   (float[3]){ (float)i - 1.4f, 2.5f * (float)i - 1, 0 }, 0.6f, 10, 1,
+			   (float[3]){ (float)i - 0.5f, 2.5f * (float)i - 1, 0 }, 0.6f, 10, 1,
 			   false, ochre);
 	s->fog = (struct scenery_fog){ .range_m = 13,
 				       .is_exponential = is_exponential,
@@ -112,21 +113,128 @@ static void make_exponential_fog(struct scenery *s)
 	make_row(s, true);
 }
 
+/* Half of it in a node that is turned, scaled and moved. */
+static void make_substance(struct scenery *s, enum substance_kind kind, float relief_m)
+{
+	const struct scenery_material solid = {
+		.opacity = 1, .by_pixel = true, .substance = (uint8_t)kind, .relief_m = relief_m
+	};
+	struct scenery_place *place = &s->nodes[0].place;
+	uint8_t rgb[3];
+	float mean[3];
+
+	substance_colour(mean, kind, middle, 1000);
+	for (int k = 0; k < 3; k++)
+		rgb[k] = (uint8_t)lrintf(mean[k] * 255);
+	for (int k = 0; k < 3; k++)
+		place->scale[k] = 0.01f; /* centimetres */
+	place->turn[2] = 0.3826834f;
+	place->turn[3] = 0.9238795f;
+	stage_ball(s, &solid, (float[3]){ 5, -8, 10 }, 35, 12, 1, false, rgb);
+	stage_pane(s, &solid, (float[3]){ 5, -20, -28 }, (float[3]){ 200, 0, 0 },
+		   (float[3]){ 0, 140, 0 }, 4, rgb);
+}
+
+static void make_marble(struct scenery *s)
+{
+	make_substance(s, SUBSTANCE_MARBLE, 0);
+}
+
+static void make_wood(struct scenery *s)
+{
+	make_substance(s, SUBSTANCE_WOOD, 0);
+	for (uint32_t i = 0; i < s->material_count; i++)
+		memcpy(s->materials[i].grain, (float[3]){ 1, 0, 0 }, 12);
+}
+
+static void make_rough_sandstone(struct scenery *s)
+{
+	make_substance(s, SUBSTANCE_SANDSTONE, 0.01f);
+}
+
+static void make_rough_laterite(struct scenery *s)
+{
+	make_substance(s, SUBSTANCE_LATERITE, 0.006f);
+}
+
+static void make_hewn(struct scenery *s)
+{
+	make_substance(s, SUBSTANCE_NONE + 1, 0.03f);
+	for (uint32_t i = 0; i < s->material_count; i++)
+		s->materials[i].substance = SUBSTANCE_NONE;
+}
+
+static void make_mirror(struct scenery *s)
+{
+	const struct scenery_material silver = { .opacity = 1, .by_pixel = true, .mirror = 0.8f };
+
+	stage_ball(s, &silver, middle, 1, 16, 1, false, white);
+}
+
+static void make_rough_gold(struct scenery *s)
+{
+	const struct scenery_material gold = { .opacity = 1,
+					       .by_pixel = true,
+					       .specular = { 255, 220, 120 },
+					       .shininess = 30,
+					       .relief_m = 0.01f,
+					       .mirror = 0.4f };
+
+	stage_ball(s, &gold, middle, 1, 16, 1, false, (const uint8_t[3]){ 212, 160, 50 });
+}
+
 static const struct material_case {
 	const char *name;
 	void (*make)(struct scenery *s);
+	float closer; /* the eye, by so many times */
 } cases[] = {
-	{ "flat", make_flat },
-	{ "Gouraud", make_gouraud },
-	{ "Phong", make_phong },
-	{ "emissive", make_emissive },
-	{ "two sides", make_two_sides },
-	{ "transparency in order", make_transparent },
-	{ "linear fog", make_linear_fog },
-	{ "exponential fog", make_exponential_fog },
+	{ "flat", make_flat, 1 },
+	{ "Gouraud", make_gouraud, 1 },
+	{ "Phong", make_phong, 1 },
+	{ "emissive", make_emissive, 1 },
+	{ "two sides", make_two_sides, 1 },
+	{ "transparency in order", make_transparent, 1 },
+	{ "linear fog", make_linear_fog, 1 },
+	{ "exponential fog", make_exponential_fog, 1 },
+	{ "marble", make_marble, 2.5f },
+	{ "wood", make_wood, 4 },
+	{ "sandstone with relief", make_rough_sandstone, 2.5f },
+	{ "laterite with relief", make_rough_laterite, 2.5f },
+	{ "hewn stone", make_hewn, 2.5f },
+	{ "environment", make_mirror, 1 },
+	{ "environment, relief, highlight", make_rough_gold, 1 },
 };
 
 enum { CASES = sizeof(cases) / sizeof(*cases), ROWS = (CASES + ACROSS - 1) / ACROSS };
+
+/* ---- what is around */
+
+enum { CUBE_PX = 32 };
+
+/* A sky that darkens upwards, over ground with stripes towards the south. */
+static struct appearance_cube make_around(void)
+{
+	static uint8_t pixels[6][4 * CUBE_PX * CUBE_PX];
+	struct appearance_cube cube = { .side_px = CUBE_PX };
+
+	for (int face = 0; face < 6; face++) {
+		cube.faces[face] = pixels[face];
+		for (int i = 0; i < CUBE_PX * CUBE_PX; i++) {
+			const float s = 2 * ((float)(i % CUBE_PX) + 0.5f) / CUBE_PX - 1,
+				    t = 2 * ((float)(i / CUBE_PX) + 0.5f) / CUBE_PX - 1;
+			const float d[6][3] = { { 1, -t, -s }, { -1, -t, s }, { s, 1, t },
+						{ s, -1, -t }, { s, -t, 1 },  { -s, -t, -1 } };
+			const float high = d[face][2] / vec_length(d[face]);
+			uint8_t *p = &pixels[face][4 * i];
+
+			p[0] = (uint8_t)(high > 0 ? 200 - 120 * high : 110 + 40 * d[face][1]);
+			p[1] = (uint8_t)(high > 0 ? 210 - 90 * high : 80);
+			p[2] = (uint8_t)(high > 0 ? 235 : 60 + 50 * d[face][0]);
+			p[3] = 255;
+		}
+	}
+	return cube;
+}
 
 /* ---- pictures of both */
 
@@ -166,12 +274,14 @@ static double psnr(const uint8_t *a, const uint8_t *b)
 }
 
 static void draw_gles(const struct gl_target *target, const struct pose *pose,
-		      const struct surface_frame *frame, uint8_t *rgba)
+		      const struct surface_frame *frame, const struct appearance_cube *around,
+		      uint8_t *rgba)
 {
 	const uint8_t *sky = frame->root->background;
 	struct scenery_picture picture = { 0 };
 
 	CHECK(scenery_picture_load(&picture, pose->scenery) == 0);
+	CHECK(scenery_picture_surround(&picture, around) == 0);
 	gl_target_bind(target);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LESS);
@@ -197,8 +307,10 @@ static struct surface_fog fog_of(const struct scenery *s)
 static double compare(const struct gl_target *target, int number)
 {
 	static uint8_t drawn[4 * PIXELS], truth[4 * PIXELS];
+	const struct appearance_cube around = make_around();
 	const struct root_page root = stage_root();
 	struct software_picture software;
+	struct camera camera;
 	struct scenery s;
 	struct pose pose;
 	struct view view;
@@ -207,11 +319,13 @@ static double compare(const struct gl_target *target, int number)
 	cases[number].make(&s);
 	CHECK(scenery_is_sane(&s) && pose_init(&pose, &s) == 0);
 	pose_step(&pose, 1e6f);
-	view_from_camera(&view, &eye);
+	camera = eye;
+	vec_scale(camera.eye_m, 1 / cases[number].closer, eye.eye_m);
+	view_from_camera(&view, &camera);
 	draw_gles(target, &pose,
 		  &(struct surface_frame){ .view = &view, .root = &root, .fog = fog_of(&s) },
-		  drawn);
-	software_init(&software, &pose, &view, &root);
+		  &around, drawn);
+	software_init(&software, &pose, &view, &root, &around);
 	software_draw(&software, truth);
 	keep(number, 0, drawn);
 	keep(number, 1, truth);
