@@ -17,6 +17,7 @@
 #include "base/resource_usage.h"
 #include "pipeline/hierarchy/master_cut.h"
 #include "pipeline/import/scan_look.h"
+#include "pipeline/octree/closed_surface.h"
 #include "pipeline/octree/reconstruct.h"
 #include "pipeline/samples/sampling_forecast.h"
 #include "pipeline/samples/sampling_trial.h"
@@ -103,6 +104,34 @@ static int look_at_scan(struct looking *looking, struct scan_look *look, uint32_
 	return 0;
 }
 
+/* With surface = octree: guesses the triangles of the closed surface from the scan's box;
+ * docs/estimate.md. */
+static void guess_closed(struct looking *looking)
+{
+	static const double box_share = 0.5;
+	struct estimate_work *work = &looking->out->work;
+	double area = 0, longest = 0, cell;
+
+	if (looking->content->surface != CONTENT_SURFACE_OCTREE)
+		return;
+	for (int k = 0; k < 3; k++) {
+		const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+		area += 2 * box_share * (double)(looking->high_m[a] - looking->low_m[a]) *
+			(double)(looking->high_m[b] - looking->low_m[b]);
+		longest = fmax(longest, (double)(looking->high_m[k] - looking->low_m[k]));
+	}
+	cell = closed_surface_cell(looking->content->cell_mm / 1000, area,
+				   (uint32_t)fmin(UINT32_MAX, (double)work->triangle_count),
+				   longest);
+	work->closed_from = work->triangle_count;
+	work->triangle_count =
+		cell > 0 ? (uint64_t)(CLOSED_SURFACE_TRIANGLES * area / (cell * cell)) : 0;
+	work->vertex_count = work->triangle_count / 2;
+	work->is_counted = false;
+	work->has_pictures = false; /* colours instead */
+}
+
 /* Scatters places over the box's sides where the scan gave next to none. */
 static void fill_places(struct looking *looking)
 {
@@ -148,6 +177,8 @@ static int look_at_scans(struct looking *looking)
 			looking->low_m[k] = 0;
 			looking->high_m[k] = 1;
 		}
+	if (rc == 0)
+		guess_closed(looking);
 	if (rc == 0 && shape) {
 		memcpy(looking->low_m, shape->low_m, sizeof(shape->low_m));
 		memcpy(looking->high_m, shape->high_m, sizeof(shape->high_m));
@@ -259,6 +290,8 @@ static const double
 	import_text = 0.09, import_foreign = 0.14,
 	/* reading a point twice and adding it to the distances around it, likewise */
 	surface_point = 0.5, surface_serial = 0.9,
+	/* closing a scan, for each triangle of the surface, likewise */
+	closing = 3.5, closing_serial = 0.2,
 	/* a triangle of a real scan to one of the trial's ball */
 	hierarchy_real = 0.68,
 	/* of the scan's triangles, to the power of which that cost falls */
@@ -323,6 +356,16 @@ static void judge_import(struct looking *looking)
 	stage->processor_s = each * looking->speeds.hierarchy_s * (double)work->triangle_count;
 	stage->time_s = spread(looking, stage->processor_s, 1);
 	stage->memory_bytes = (16u << 20) + (work->is_foreign ? 6 : 2) * mesh_bytes;
+	if (work->closed_from > 0) {
+		enum { RESIDENT = 512 << 20, A_TRIANGLE = 250 };
+		const double closing_s =
+			closing * looking->speeds.hierarchy_s * (double)work->triangle_count;
+
+		stage->processor_s += closing_s;
+		stage->time_s += spread(looking, closing_s, closing_serial);
+		stage->memory_bytes +=
+			(uint64_t)fmin(RESIDENT, A_TRIANGLE * (double)work->closed_from);
+	}
 }
 
 static void judge_hierarchy(struct looking *looking)
@@ -630,7 +673,9 @@ void estimate_print(FILE *to, const struct estimate *estimate)
 		"%s%" PRIu64 " triangles%s%s; %" PRIu32 " sampling points, about %" PRIu64
 		" faces and %" PRIu64 " tiles\n",
 		work->is_counted ? "" : "about ", work->triangle_count,
-		work->surface_points > 0 ? ", mostly of a surface that is made first" : "",
+		work->surface_points > 0 || work->closed_from > 0
+			? ", mostly of a surface that is made first"
+			: "",
 		work->has_pictures ? " with pictures" : "", work->point_count, work->face_count,
 		work->tile_count);
 	if (work->points_done > 0)

@@ -29,6 +29,8 @@ struct estimate_stage {
 struct estimate_work {
 	uint64_t triangle_count, vertex_count;
 	uint64_t surface_points; /* of scans that become a surface first; 0: there is none */
+	uint64_t closed_from; /* triangles of the scans of which a closed surface is made; 0: none
+				 is */
 	bool is_counted; /* the files say how many triangles they have, or they were imported */
 	bool is_text, is_foreign, has_pictures;
 	uint32_t point_count, points_done;

@@ -33,6 +33,13 @@ enum content_lit {
 	CONTENT_LIT_YES,
 };
 
+/* What of the scans is published. */
+enum content_surface {
+	CONTENT_SURFACE_SCAN,   /* their faces */
+	CONTENT_SURFACE_OCTREE, /* one closed surface around them: pipeline/octree/closed_surface.h
+				 */
+};
+
 /* Which tiles of a release with a budget get a better quality. */
 enum content_quality_rule {
 	CONTENT_QUALITY_GAIN,     /* those where a byte gains most similarity */
@@ -62,7 +69,8 @@ struct content {
 	enum tile_effort effort; /* of tiles */
 	uint64_t budget_bytes;   /* of the whole release; 0: none. Not in temple.ini */
 	enum content_quality_rule quality_rule;
-	double cell_mm;           /* leaf cubes of a surface of range images; 0: by the points */
+	enum content_surface surface;
+	double cell_mm;           /* leaf cubes of surfaces that are made; 0: by the scans */
 	bool binary_tree;         /* the paper's binary hierarchy instead of groups */
 	bool simplify_features;   /* levels keep feature edges; else by quadrics */
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */

@@ -217,6 +217,16 @@ static bool set_simplify(const struct setting *setting, void *target, const char
 	return content->simplify_features || strcasecmp(value, "quadric") == 0;
 }
 
+static bool set_surface(const struct setting *setting, void *target, const char *value)
+{
+	const bool is_octree = strcasecmp(value, "octree") == 0;
+
+	(void)setting;
+	((struct content *)target)->surface =
+		is_octree ? CONTENT_SURFACE_OCTREE : CONTENT_SURFACE_SCAN;
+	return is_octree || strcasecmp(value, "scan") == 0;
+}
+
 static bool set_cell_mm(const struct setting *setting, void *target, const char *value)
 {
 	return settings_numbers(setting, value, &((struct content *)target)->cell_mm, 1);
@@ -304,6 +314,7 @@ static const struct setting settings[CONTENT_SETTINGS] = {
 	SETTING("samples", "quality", "gain, uniform or features", set_quality_rule),
 	SETTING("hierarchy", "kind", "groups or tree", set_kind),
 	SETTING("hierarchy", "simplify", "quadric or features", set_simplify),
+	SETTING("hierarchy", "surface", "scan or octree", set_surface),
 	NUMBERS("hierarchy", "cell_mm", "millimetres from 0.001 to 100000", set_cell_mm, cell_mm,
 		0.001, 100000),
 	NUMBERS("hierarchy", "patch_triangles", NULL, settings_whole, patch_triangles, 256, 4000),

@@ -12,10 +12,18 @@
 #include "pipeline/content/scan_reports.h"
 #include "pipeline/content/scan_surface.h"
 #include "pipeline/import/mesh_file.h"
+#include "pipeline/octree/closed_surface.h"
 #include "pipeline/octree/reconstruct.h"
 
-/* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files. */
-enum { IMPORT_VERSION = 2, SHAPE_VERSION = 1, KEY_TEXT_MAX = 1 << 26, SHAPE_BYTES_MAX = 4096 };
+/* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files,
+ * CLOSING_VERSION whenever surface = octree makes another of it. */
+enum {
+	IMPORT_VERSION = 2,
+	CLOSING_VERSION = 1,
+	SHAPE_VERSION = 2,
+	KEY_TEXT_MAX = 1 << 26,
+	SHAPE_BYTES_MAX = 4096
+};
 
 struct scans {
 	const struct content *content;
@@ -66,6 +74,10 @@ static int make_key(struct scans *scans)
 	buffer_put_f64(&text, import->metres_per_unit);
 	buffer_put(&text, import->default_colour, sizeof(import->default_colour));
 	buffer_put_u8(&text, import->override_colour);
+	if (content->surface == CONTENT_SURFACE_OCTREE) {
+		buffer_put_u32(&text, CLOSING_VERSION);
+		buffer_put_f64(&text, content->cell_mm);
+	}
 	if (scans->plan.count > 0)
 		buffer_put(&text, scans->surface.bytes, HASH_BYTES);
 	for (uint32_t i = 0; i < content->scan_count && rc == 0; i++)
@@ -196,6 +208,32 @@ static int import_all(struct mesh *out, struct scans *scans,
 	return rc < 0 ? rc : judge_mix(content, out, reports, count, diagnostics);
 }
 
+/* Replaces the joint mesh by the closed surface that is asked for. */
+static int close_surface(struct mesh *mesh, const struct content *content,
+			 struct diagnostics *diagnostics)
+{
+	struct closed_surface_report report;
+	int rc;
+
+	if (content->surface != CONTENT_SURFACE_OCTREE)
+		return 0;
+	rc = closed_surface_make(mesh, content->cell_mm / 1000, &report, diagnostics);
+	if (rc < 0)
+		return rc;
+	log_info("pipeline",
+		 "surface: %u triangles in %u closed parts of %u in %u shells (%u inside out, %u "
+		 "triangles twice), cubes of %.4g mm%s",
+		 mesh->triangle_count, report.parts, report.triangles, report.shells,
+		 report.turned_shells, report.copies, 1000 * report.cell_m,
+		 content->cell_mm > 0 ? "" : " (cell_mm sets others)");
+	log_info(
+		"pipeline",
+		"surface: %.1f %% of the scans' area lies inside of matter and is left out, %.1f %% "
+		"encloses nothing and becomes sheets; left out are %u small parts or cavities",
+		100 * report.inner_share, 100 * report.sheet_share, report.dropped_parts);
+	return 0;
+}
+
 int scans_make_surface(struct scans *scans, bool *made, struct diagnostics *diagnostics)
 {
 	char path[CONTENT_PATH_BYTES];
@@ -251,6 +289,8 @@ static int import_and_save(struct scans *scans, const char *path, struct diagnos
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
 	int rc = reports ? import_all(&scans->mesh, scans, reports, diagnostics) : -ENOMEM;
 
+	if (rc == 0)
+		rc = close_surface(&scans->mesh, scans->content, diagnostics);
 	if (rc == 0) {
 		rc = mesh_file_move(&scans->mesh, scans->key, path);
 		if (rc < 0)
@@ -301,6 +341,7 @@ static void encode_shape(struct buffer *file, const struct scans *scans)
 		buffer_put_f32(file, shape->high_m[k]);
 	}
 	buffer_put_u8(file, shape->has_textures);
+	buffer_put_u8(file, shape->had_pictures);
 	buffer_put_u32(file, shape->scan_count);
 	for (uint32_t i = 0; i < shape->scan_count; i++)
 		buffer_put_u32(file, shape->face_counts[i]);
@@ -325,6 +366,7 @@ static bool decode_shape(struct scans *scans, struct bytes file)
 		shape->high_m[k] = reader_f32(&reader);
 	}
 	shape->has_textures = reader_u8(&reader);
+	shape->had_pictures = reader_u8(&reader);
 	shape->scan_count = reader_u32(&reader);
 	if (shape->scan_count > CONTENT_SCANS_MAX)
 		return false;
@@ -357,6 +399,19 @@ const struct scans_shape *scans_known_shape(struct scans *scans)
 	return scans->has_shape ? &scans->shape : NULL;
 }
 
+/* Returns whether a scan had pictures, by what the import reported. */
+static bool reports_have_pictures(struct scans *scans)
+{
+	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
+	const int count = reports ? scans_get_reports(scans, reports) : -ENOMEM;
+	bool found = false;
+
+	for (int i = 0; i < count; i++)
+		found |= reports[i].textures > 0;
+	free(reports);
+	return found;
+}
+
 /* Takes the shape of the mesh in memory and saves it. */
 static int take_shape(struct scans *scans, struct diagnostics *diagnostics)
 {
@@ -367,6 +422,7 @@ static int take_shape(struct scans *scans, struct diagnostics *diagnostics)
 
 	*shape = (struct scans_shape){ .has_textures = scans->mesh.textures != NULL,
 				       .scan_count = scans->mesh.scan_count };
+	shape->had_pictures = shape->has_textures || reports_have_pictures(scans);
 	mesh_box(&scans->mesh, shape->low_m, shape->high_m);
 	for (uint32_t i = 0; i < shape->scan_count; i++)
 		shape->face_counts[i] = scans->mesh.scans[i].face_count;

@@ -12,6 +12,7 @@ struct scans;
 struct scans_shape {
 	float low_m[3], high_m[3]; /* bounding box */
 	bool has_textures;
+	bool had_pictures; /* the scans have; a surface that was made of them has colours instead */
 	uint32_t scan_count;
 	/* as counted in each scan's file; 0: its faces have no numbers */
 	uint32_t face_counts[CONTENT_SCANS_MAX];

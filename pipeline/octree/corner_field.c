@@ -355,22 +355,30 @@ int corner_field_add(struct corner_field *field, const struct range_scan *scan)
 	return rc;
 }
 
-int corner_field_set(struct corner_field *field, const int32_t corner[3], float distance)
+int corner_field_want(struct corner_field *field, const int32_t corner[3], uint32_t *out_block,
+		      struct field_corner **out)
 {
 	const int32_t mask = FIELD_BLOCK_SIDE - 1;
+	const int32_t index =
+		((corner[2] & mask) * FIELD_BLOCK_SIDE + (corner[1] & mask)) * FIELD_BLOCK_SIDE +
+		(corner[0] & mask);
 	int32_t block[3];
-	uint32_t found;
 	int rc;
 
 	for (int k = 0; k < 3; k++)
 		block[k] = corner[k] >> FIELD_BLOCK_SHIFT;
-	rc = find_or_add(field, block, &found);
-	if (rc == 0) {
-		const int32_t index = ((corner[2] & mask) * FIELD_BLOCK_SIDE + (corner[1] & mask)) *
-					      FIELD_BLOCK_SIDE +
-				      (corner[0] & mask);
+	rc = find_or_add(field, block, out_block);
+	*out = rc == 0 ? &field->corners[*out_block][index] : NULL;
+	return rc;
+}
 
-		field->corners[found][index] = (struct field_corner){ distance, 1 };
-	}
+int corner_field_set(struct corner_field *field, const int32_t corner[3], float distance)
+{
+	struct field_corner *found;
+	uint32_t block;
+	const int rc = corner_field_want(field, corner, &block, &found);
+
+	if (rc == 0)
+		*found = (struct field_corner){ distance, 1 };
 	return rc;
 }

@@ -46,6 +46,10 @@ static inline map_key field_key(const int32_t block[3])
 must_check int corner_field_add(struct corner_field *field, const struct range_scan *scan);
 void corner_field_finish(struct corner_field *field); /* NULL and zeroed are fine */
 
+/* Finds a corner, and adds its block if that is missing. *out_block is the block's number; *out is
+ * borrowed until the next block is added. Errors as corner_field_add; *out is then NULL. */
+must_check int corner_field_want(struct corner_field *field, const int32_t corner[3],
+				 uint32_t *out_block, struct field_corner **out);
 /* Gives a corner a distance, in cells, and confidence 1, whatever was seen there. Errors as
  * corner_field_add. */
 must_check int corner_field_set(struct corner_field *field, const int32_t corner[3],

@@ -89,14 +89,43 @@ static void compact(struct mesh *mesh, const uint32_t *parents, const uint32_t *
 	mesh->vertex_count = vertices;
 }
 
-int mesh_parts_drop_small(struct mesh *mesh, double share, uint32_t *dropped)
+/* Sets the sizes of cavities to 0: of parts that enclose a volume below 0. parents: the root of
+ * each vertex. */
+static int forget_cavities(const struct mesh *mesh, const uint32_t *parents, uint32_t *sizes)
+{
+	double *volumes = spill_alloc((mesh->vertex_count + (size_t)1) * sizeof(*volumes));
+
+	if (!volumes)
+		return -errno;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		const uint32_t root = parents[mesh->triangles[t][0]];
+		double p[3][3];
+
+		/* from the part's own vertex, so that small volumes stay exact */
+		for (int i = 0; i < 3; i++)
+			for (int k = 0; k < 3; k++)
+				p[i][k] = (double)mesh->positions[mesh->triangles[t][i]][k] -
+					  (double)mesh->positions[root][k];
+		for (int k = 0; k < 3; k++)
+			volumes[root] += p[0][k] * (p[1][(k + 1) % 3] * p[2][(k + 2) % 3] -
+						    p[1][(k + 2) % 3] * p[2][(k + 1) % 3]);
+		spill_pass(t);
+	}
+	for (uint32_t i = 0; i < mesh->vertex_count; i++)
+		if (parents[i] == i && volumes[i] < 0)
+			sizes[i] = 0;
+	spill_free(volumes);
+	return 0;
+}
+
+int mesh_parts_drop(struct mesh *mesh, double share, bool with_cavities, uint32_t *dropped)
 {
 	const size_t bytes = (mesh->vertex_count + (size_t)1) * sizeof(uint32_t);
 	uint32_t parts, largest = 0;
 	uint32_t *parents = find_parts(mesh, &parts);
 	uint32_t *sizes = parents ? spill_alloc(bytes) : NULL;
 	uint32_t *numbers = sizes ? spill_alloc(bytes) : NULL;
-	const int rc = numbers ? 0 : -errno;
+	int rc = numbers ? 0 : -errno;
 
 	*dropped = 0;
 	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
@@ -104,11 +133,13 @@ int mesh_parts_drop_small(struct mesh *mesh, double share, uint32_t *dropped)
 		spill_pass(i);
 	}
 	for (uint32_t t = 0; t < mesh->triangle_count && rc == 0; t++) {
-		uint32_t *size = &sizes[parents[mesh->triangles[t][0]]];
-
-		largest = ++*size > largest ? *size : largest;
+		sizes[parents[mesh->triangles[t][0]]]++;
 		spill_pass(t);
 	}
+	if (rc == 0 && with_cavities)
+		rc = forget_cavities(mesh, parents, sizes);
+	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++)
+		largest = sizes[i] > largest ? sizes[i] : largest;
 	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
 		*dropped += parents[i] == i && sizes[i] < share * largest;
 		spill_pass(i);

@@ -221,7 +221,7 @@ int reconstruct(struct mesh *out, const struct reconstruct_scan *scans, uint32_t
 	if (rc == 0 && out->triangle_count == 0)
 		rc = -ENODATA;
 	if (rc == 0 && !options->keep_small && !options->is_closed)
-		rc = mesh_parts_drop_small(out, small_share, &report->dropped_parts);
+		rc = mesh_parts_drop(out, small_share, false, &report->dropped_parts);
 	if (rc == 0)
 		rc = reconstruct_judge(out, report);
 	if (rc == -ENODATA)

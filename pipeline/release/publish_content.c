@@ -95,7 +95,7 @@ static int judge_light(bool *lit, struct scans *scans)
 	if (rc < 0)
 		log_error("pipeline", "%s", diagnostics_cause(&diagnostics, rc));
 	else
-		*lit = content_is_lit(content, shape && shape->has_textures);
+		*lit = content_is_lit(content, shape && shape->had_pictures);
 	return rc;
 }
 

@@ -461,7 +461,7 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 			diagnostics, -EINVAL, content->folder, 0,
 			"[samples] quality = features counts features of depth, which "
 			"faces of scans with pictures do not have; write gain");
-	sampling->drawing.lit = content_is_lit(content, shape->has_textures);
+	sampling->drawing.lit = content_is_lit(content, shape->had_pictures);
 	sampling->drawing.procedural = content->colours == CONTENT_COLOURS_PROCEDURAL;
 	sampling->drawing.substance = content->substance;
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));

@@ -70,7 +70,7 @@ is_public() {
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
-	pipeline/octree/*) names="reconstruct budget_mesh mesh_ply" ;;
+	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;
 	pipeline/deform/*) names="deform deform_plan" ;;
 	pipeline/keys/*) names="keys keys_place keys_tuf" ;;
 	pipeline/material/*) names="material" ;;

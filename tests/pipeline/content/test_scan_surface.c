@@ -158,6 +158,53 @@ static void it_is_made_again_only_if_its_own_inputs_change(void **state)
 	finish(built);
 }
 
+/* A ball and a triangle, which becomes a sheet; both keep the numbers of their faces. */
+static void surface_octree_closes_all_scans(void **state)
+{
+	uint32_t open_triangles;
+	struct hash open_key, key, other_key;
+	struct built *built;
+	(void)state;
+
+	write_ini("[hierarchy]\ncell_mm = 60\n");
+	built = build();
+	CHECK(built->rc == 0 && scans_key(built->scans, &open_key, NULL) == 0);
+	open_triangles = built->mesh->scans[1].triangle_count;
+	finish(built);
+	write_ini("[hierarchy]\nsurface = octree\ncell_mm = 60\n");
+	built = build();
+	if (built->rc < 0)
+		fail_msg("%s", diagnostics_cause(&built->diagnostics, built->rc));
+	CHECK(scans_key(built->scans, &key, NULL) == 0 && !hash_equal(key, open_key));
+	CHECK(built->mesh->scan_count == 1 + VIEWS && built->mesh->scans[0].triangle_count > 100);
+	CHECK(built->mesh->scans[0].triangle_count + built->mesh->scans[1].triangle_count ==
+	      built->mesh->triangle_count);
+	CHECK(built->mesh->scans[1].face_count == open_triangles);
+	CHECK(built->mesh->triangle_count > 1000 && built->mesh->faces);
+	/* two closed surfaces of genus 0 */
+	CHECK(built->mesh->triangle_count == 2 * built->mesh->vertex_count - 8);
+	for (uint32_t i = 0; i < built->mesh->vertex_count; i++) {
+		const double at[3] = { (double)built->mesh->positions[i][0],
+				       (double)built->mesh->positions[i][1],
+				       (double)built->mesh->positions[i][2] };
+
+		if (at[0] > 5)
+			continue;
+		CHECK(fabs(ball_outside(at)) < 0.03);
+		CHECK(abs(built->mesh->colours[i][2] - (int)(127 + 200 * at[0])) < 14);
+	}
+	finish(built);
+	write_ini("[hierarchy]\nsurface = octree\ncell_mm = 50\n");
+	built = build();
+	CHECK(built->rc == 0 && scans_key(built->scans, &other_key, NULL) == 0);
+	CHECK(!hash_equal(key, other_key));
+	finish(built);
+	write_ini("[hierarchy]\nsurface = octree\ncell_mm = 0.01\n");
+	built = build();
+	CHECK(built->rc == -EINVAL && strstr(built->diagnostics.first.text, "correct the unit"));
+	finish(built);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -165,6 +212,8 @@ int main(void)
 						make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(it_is_made_again_only_if_its_own_inputs_change,
 						make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(surface_octree_closes_all_scans, make_folder,
+						remove_folder),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
