@@ -8,6 +8,8 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include "format/scenery_code.h"
+
 enum { WORKERS_MAX = 16 };
 
 struct job {
@@ -87,6 +89,7 @@ void pool_answer_finish(struct pool_answer *answer)
 	free(answer->patches);
 	label_group_finish(&answer->labels);
 	solid_finish(&answer->solid);
+	scenery_finish(&answer->scenery);
 	answer->rgb = NULL;
 	answer->patches = NULL;
 	answer->patch_count = 0;
@@ -167,6 +170,10 @@ static void do_job(struct job *job, const struct lattice *lattice)
 	case POOL_SOLID:
 		rc = solid_decode(&job->answer.solid,
 				  (struct bytes){ job->object, job->object_bytes });
+		break;
+	case POOL_SCENERY:
+		rc = scenery_decode(&job->answer.scenery,
+				    (struct bytes){ job->object, job->object_bytes });
 		break;
 	}
 	if (rc < 0)

@@ -1,16 +1,17 @@
 /* Worker threads that decode objects: tiles into pixels, patch groups into meshes with a BVH,
- * labels, and the octree of where an eye may be. One thread gives and takes; an eventfd reports
- * answers. */
+ * labels, scenery, and the octree of where an eye may be. One thread gives and takes; an eventfd
+ * reports answers. */
 #ifndef GOPURA_RENDER_PATCHES_POOL_H
 #define GOPURA_RENDER_PATCHES_POOL_H
 
 #include "format/label.h"
 #include "format/samples.h"
+#include "format/scenery.h"
 #include "format/solid.h"
 #include "format/tile.h"
 #include "geometry/patch_bvh.h"
 
-enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS, POOL_SOLID };
+enum pool_kind { POOL_TILE, POOL_GROUP, POOL_LABELS, POOL_SOLID, POOL_SCENERY };
 
 /* A vertex as uploaded to the GPU: 12 bytes. */
 struct packed_vertex {
@@ -41,6 +42,7 @@ struct pool_answer {
 	uint32_t patch_count;
 	struct label_group labels;
 	struct solid solid;
+	struct scenery scenery;
 };
 
 struct pool;

@@ -328,7 +328,7 @@ static int take_object(struct scene *scene, struct object *object, struct bytes 
 	case OBJECT_BLOCK:
 		return stream_growth_give(&scene->stream.growth, (uint32_t)object->id, bytes);
 	case OBJECT_SCENERY:
-		return scene->scenery.is_here ? 0 : scene_open_scenery(scene, bytes);
+		return decode_elsewhere(scene, object, POOL_SCENERY, bytes);
 	case OBJECT_SOLID:
 		return decode_elsewhere(scene, object, POOL_SOLID, bytes);
 	}

@@ -13,6 +13,7 @@
 #include "geometry/vec.h"
 #include "render/plan/plan_quality.h"
 #include "render/scene/scene_objects.h"
+#include "render/scene/scene_scenery.h"
 #include "render/scene/scene_space.h"
 
 /* A piece is planned again when the eye has moved by this share of its distance. */
@@ -38,6 +39,8 @@ static void upload_one(struct scene *scene, struct pool_answer *answer, struct s
 				&scene->accumulation); /* the accumulated sum has the old outline */
 	} else if (rc == 0 && object->kind == OBJECT_SOLID) {
 		scene_put_solid(scene, &answer->solid);
+	} else if (rc == 0 && object->kind == OBJECT_SCENERY) {
+		rc = scene_put_scenery(scene, &answer->scenery);
 	} else if (rc == 0) {
 		rc = tiles_put(&scene->tiles, tile_name_unpack(object->id), answer->rgb);
 		out->tiles_uploaded += rc == 0;

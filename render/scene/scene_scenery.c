@@ -4,15 +4,17 @@
 #include <math.h>
 
 #include "base/log.h"
-#include "format/scenery_code.h"
 
-int scene_open_scenery(struct scene *scene, struct bytes bytes)
+int scene_put_scenery(struct scene *scene, struct scenery *scenery)
 {
 	struct scene_scenery *own = &scene->scenery;
-	int rc = scenery_decode(&own->content, bytes);
+	int rc;
 
-	if (rc == 0)
-		rc = pose_init(&own->pose, &own->content);
+	if (own->is_here)
+		return 0;
+	own->content = *scenery;
+	*scenery = (struct scenery){ 0 };
+	rc = pose_init(&own->pose, &own->content);
 	if (rc == 0)
 		rc = scenery_picture_load(&own->picture, &own->content);
 	if (rc < 0) {

@@ -4,8 +4,9 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Takes the object. Errors as scenery_decode and gl_check. */
-must_check int scene_open_scenery(struct scene *scene, struct bytes bytes);
+/* Takes what a worker decoded, unless it is here already, and uploads it; *scenery is then empty.
+ * -ENOMEM, or as gl_check. */
+must_check int scene_put_scenery(struct scene *scene, struct scenery *scenery);
 /* Lets time pass; returns whether the picture changes. */
 bool scene_step_scenery(struct scene *scene, float passed_ms);
 /* Returns the fog that is seen now. */
