@@ -138,8 +138,7 @@ static int make(struct mesh *out, const struct vrml *scene, const char *path,
 				     "the scene has no surface; give one with shapes of faces");
 	if (surface.left_out > 0)
 		diagnostics_add(&report->warning, 0, path, 0,
-				"%u shapes without a surface (points, lines, texts) were left out",
-				surface.left_out);
+				"%u shapes whose geometry is none were left out", surface.left_out);
 	else if (scene->route_count > 0)
 		diagnostics_add(&report->warning, 0, path, 0,
 				"what moves in it (%u ROUTE) was left out: it is shown at rest",

@@ -161,6 +161,21 @@ static float crease_of(const struct vrml_node *geometry)
 	return crease > 0 ? crease : 0;
 }
 
+/* Points and lines have the colour in which they shine, whatever the light (6.24, 6.36); without a
+ * Material they are white. */
+static void get_line_material(struct scenery_material *out, uint8_t rgb[3],
+			      const struct vrml_node *material)
+{
+	static const float black[3], white[3] = { 1, 1, 1 };
+	float emissive[3];
+
+	*out = scenery_plain;
+	memcpy(emissive, white, sizeof(emissive));
+	if (material)
+		vrml_get_floats(emissive, material, "emissiveColor", 3, black);
+	vrml_colour(rgb, emissive);
+}
+
 /* Sets what a Material and the sides of a geometry say, and the colour of its surface. A highlight
  * is lost between the corners of coarse shapes, so it is computed at each pixel. */
 static void get_material(struct scenery_material *out, uint8_t rgb[3],
@@ -170,8 +185,13 @@ static void get_material(struct scenery_material *out, uint8_t rgb[3],
 	float diffuse[3], emissive[3], specular[3];
 
 	*out = scenery_plain;
-	out->has_two_sides = vrml_field_named(geometry->type, "solid", 5) >= 0 &&
-			     !vrml_get_integer(geometry, "solid", 1);
+	if (vrml_is(geometry, "PointSet") || vrml_is(geometry, "IndexedLineSet")) {
+		get_line_material(out, rgb, material);
+		return;
+	}
+	out->has_two_sides =
+		vrml_is(geometry, "Text") || (vrml_field_named(geometry->type, "solid", 5) >= 0 &&
+					      !vrml_get_integer(geometry, "solid", 1));
 	vrml_colour(rgb, grey);
 	if (!material)
 		return;
@@ -229,7 +249,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	rc = vrml_shape_add(&soup, geometry, rgb, is_mirrored, walk->diagnostics);
 	if (rc == 0)
 		diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
-				"%s has no surface; it was left out", geometry->type->name);
+				"%s is no geometry; it was left out", geometry->type->name);
 	if (rc > 0) {
 		scenery_look_grain(&kept, &soup, &walk->maker->out.nodes[walk->root].place);
 		rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles, soup.count,

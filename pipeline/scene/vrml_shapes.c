@@ -10,7 +10,9 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/vrml_extrusion.h"
 #include "pipeline/scene/vrml_faces.h"
+#include "pipeline/scene/vrml_lines.h"
 #include "pipeline/scene/vrml_nurbs.h"
+#include "pipeline/scene/vrml_words.h"
 
 #define TURN 6.2831853f
 
@@ -245,6 +247,17 @@ static const struct {
 	{ "TrimmedSurface", add_nurbs },
 };
 
+static const struct {
+	const char *name;
+	int (*add)(struct soup *soup, const struct vrml_node *node, const uint8_t rgb[3],
+		   struct diagnostics *diagnostics);
+} sets[] = {
+	{ "IndexedFaceSet", vrml_faces_add },
+	{ "IndexedLineSet", vrml_lines_add },
+	{ "PointSet", vrml_points_add },
+	{ "Text", vrml_words_add },
+};
+
 static int add_any(const struct shaping *shaping)
 {
 	const char *name = shaping->node->type->name;
@@ -255,9 +268,10 @@ static int add_any(const struct shaping *shaping)
 
 			return rc < 0 ? rc : 1;
 		}
-	if (strcmp(name, "IndexedFaceSet") == 0)
-		return vrml_faces_add(shaping->soup, shaping->node, shaping->rgb,
-				      shaping->diagnostics);
+	for (size_t i = 0; i < ARRAY_COUNT(sets); i++)
+		if (strcmp(name, sets[i].name) == 0)
+			return sets[i].add(shaping->soup, shaping->node, shaping->rgb,
+					   shaping->diagnostics);
 	return 0;
 }
 

@@ -13,7 +13,7 @@ struct vrml_surface {
 	/* ImageTexture nodes, which the triangles' textures count; owned, the nodes borrowed */
 	const struct vrml_node **textures;
 	uint32_t texture_count, texture_room;
-	uint32_t left_out; /* shapes without a surface: points, lines, texts */
+	uint32_t left_out; /* shapes whose geometry is none */
 	bool has_colours;  /* some material or colour is given */
 };
 

@@ -217,8 +217,8 @@ static void what_is_not_kept_is_named_with_its_line(void **state)
 		       "ROUTE P.value_changed TO G.translation",
 		  "a.wrl:3: this TimeSensor is started by no TouchSensor's touchTime and does not "
 		  "loop; it was left out" },
-		{ HEAD "Shape { geometry Box {} }\nShape { geometry PointSet {} }",
-		  "a.wrl:3: PointSet has no surface; it was left out" },
+		{ HEAD "Shape { geometry Box {} }\nShape { geometry Group {} }",
+		  "a.wrl:3: Group is no geometry; it was left out" },
 	};
 
 	(void)state;
