@@ -361,6 +361,8 @@ static void send_flood(struct stage *stage)
 		{ .kind = MESSAGE_STATUS, .status.received_bytes = UINT64_MAX },
 		{ .kind = MESSAGE_MISSING, .missing = { stage->hashes[0], MISSING_NOT_FOUND } },
 		{ .kind = MESSAGE_META, .meta = { META_ROOT, 2, bytes_of(stage, 0), 0 } },
+		{ .kind = MESSAGE_FILE,
+		  .file = { .name = "9.root.json", .bytes = bytes_of(stage, 0) } },
 	};
 	const struct message *message = &messages[random_below(stage, ARRAY_COUNT(messages))];
 

@@ -110,6 +110,37 @@ static void writes_what_was_asked_for_before_it_ends(void **unused)
 	state_destroy(state);
 }
 
+/* What was asked for later replaces what waits, but not the floors that it clears. */
+static void writes_the_last_of_the_trusted_metadata(void **unused)
+{
+	static const uint8_t one[] = "one", two[] = "two";
+	const struct state_tuf first = { { one, 3 }, { one, 2 }, { NULL, 0 }, { NULL, 0 } };
+	const struct state_tuf second = { { two, 3 }, { two, 2 }, { two, 1 }, { two, 3 } };
+	struct state_writer *writer = open_keeper();
+	struct state_writer_answer answer;
+	struct state_tuf kept;
+	struct state *state;
+
+	(void)unused;
+	activate(writer, 9);
+	wait_for_answer(writer, &answer);
+	gated = true;
+	state_writer_prove(writer); /* the thread waits for the disk */
+	CHECK(state_writer_set_tuf(writer, &first, STATE_CLEAR_SEQUENCE_FLOOR) == 0);
+	CHECK(state_writer_set_tuf(writer, &second, STATE_CLEAR_NOTHING) == 0);
+	gated = false;
+	for (int i = 0; i < 32; i++)
+		sem_post(&gate);
+	state_writer_destroy(writer);
+	CHECK(state_create(&state, path) == 0);
+	CHECK(state_tuf(state, &kept) == 0);
+	CHECK(bytes_equal(kept.root, second.root) && bytes_equal(kept.timestamp, second.timestamp));
+	CHECK(bytes_equal(kept.snapshot, second.snapshot) &&
+	      bytes_equal(kept.targets, second.targets));
+	CHECK(state_sequence_floor(state) == 0);
+	state_destroy(state);
+}
+
 static void tells_of_a_release_that_is_too_old(void **unused)
 {
 	struct state_writer *writer = open_keeper();
@@ -144,6 +175,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(asks_while_the_disk_sleeps, enter_empty_folder,
 						leave_folder),
 		cmocka_unit_test_setup_teardown(writes_what_was_asked_for_before_it_ends,
+						enter_empty_folder, leave_folder),
+		cmocka_unit_test_setup_teardown(writes_the_last_of_the_trusted_metadata,
 						enter_empty_folder, leave_folder),
 		cmocka_unit_test_setup_teardown(tells_of_a_release_that_is_too_old,
 						enter_empty_folder, leave_folder),
