@@ -20,7 +20,7 @@ enum {
 	TRIALS = 4  /* of widening a corner, each half as far as the one before */
 };
 
-static void measure(struct solid_way *way)
+void solid_way_measure(struct solid_way *way)
 {
 	way->at_m[0] = 0;
 	for (uint32_t i = 1; i < way->count; i++)
@@ -33,7 +33,7 @@ void solid_way_straight(struct solid_way *way, const float from_m[3], const floa
 	way->count = 2;
 	vec_copy(way->points_m[0], from_m);
 	vec_copy(way->points_m[1], to_m);
-	measure(way);
+	solid_way_measure(way);
 }
 
 float solid_way_length_m(const struct solid_way *way)
@@ -234,6 +234,6 @@ int solid_way_plan(struct solid_way *way, const struct solid *solid, const float
 		cut_corners(way, solid);
 	if (rc == 0 && vec_distance(from, from_m) > 0)
 		rc = leave_stone(way, from_m);
-	measure(way);
+	solid_way_measure(way);
 	return rc;
 }

@@ -15,6 +15,8 @@ struct solid_way {
 
 /* Sets a straight way, whatever is in between. */
 void solid_way_straight(struct solid_way *way, const float from_m[3], const float to_m[3]);
+/* Sets at_m from the points. */
+void solid_way_measure(struct solid_way *way);
 /* Plans a way. A last point that is not free is replaced by the nearest one that is; a first one
  * that is not is left by the shortest way. Returns -ENOENT if there is no way or it would take too
  * long to find, or -ENOMEM; *way is then straight, and not free. */

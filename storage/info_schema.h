@@ -12,7 +12,7 @@ enum {
 };
 
 /* Names of the bits of enum info_tool, in this order. */
-enum { INFO_TOOL_NAMES = 3 };
+enum { INFO_TOOL_NAMES = 4 };
 extern const char *const info_tool_names[INFO_TOOL_NAMES];
 
 #endif

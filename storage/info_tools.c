@@ -9,7 +9,7 @@
 #include "storage/info_rows.h"
 #include "storage/info_schema.h"
 
-const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section", "measure" };
+const char *const info_tool_names[INFO_TOOL_NAMES] = { "light", "section", "measure", "walk" };
 
 unsigned info_tool_named(const char *name, size_t length)
 {

@@ -5,8 +5,13 @@
 #include "storage/info.h"
 
 /* Viewing tools that the content offers to visitors, one bit each: docs/tools.md. */
-enum info_tool { INFO_TOOL_LIGHT = 1, INFO_TOOL_SECTION = 2, INFO_TOOL_MEASURE = 4 };
-/* Returns the tool of a name ("light", "section" or "measure"); 0: none of them. */
+enum info_tool {
+	INFO_TOOL_LIGHT = 1,
+	INFO_TOOL_SECTION = 2,
+	INFO_TOOL_MEASURE = 4,
+	INFO_TOOL_WALK = 8,
+};
+/* Returns the tool of a name ("light", "section", "measure" or "walk"); 0: none of them. */
 unsigned info_tool_named(const char *name, size_t length);
 
 /* Returns the tools that the content offers, a mask of enum info_tool; unknown ones are left

@@ -23,6 +23,7 @@ enum overlay_action_kind {
 	OVERLAY_LIGHT,      /* toggle this tool */
 	OVERLAY_SECTION,    /* toggle this tool */
 	OVERLAY_MEASURE,    /* toggle this tool */
+	OVERLAY_WALK,       /* toggle this tool */
 	OVERLAY_CHOICE,     /* choice: this state of the site was chosen */
 	OVERLAY_KEY,        /* key: for overlay_press */
 	OVERLAY_FOUND,      /* part: a search result was tapped */

@@ -74,6 +74,8 @@ static void try_layout(struct bar_view *view, const struct theme *theme,
 		add(view, BAR_SECTION, -1, target_px);
 	if (has.measure && !view->toolless)
 		add(view, BAR_MEASURE, -1, target_px);
+	if (has.walk && !view->toolless)
+		add(view, BAR_WALK, -1, target_px);
 	add(view, BAR_LARGE, -1, target_px);
 	if (has.reach)
 		add(view, BAR_REACH, -1, target_px);
@@ -137,12 +139,13 @@ struct overlay_action bar_view_tap(const struct bar_view *view, const struct scr
 				   const struct languages *languages, bool back, float x_px)
 {
 	static const enum overlay_action_kind kinds[] = {
-		[BAR_HOME] = OVERLAY_HOME,         [BAR_BACK] = OVERLAY_BACK,
-		[BAR_HELP] = OVERLAY_HELP,         [BAR_SEARCH] = OVERLAY_SEARCH,
-		[BAR_TOURS] = OVERLAY_TOURS,       [BAR_LIGHT] = OVERLAY_LIGHT,
-		[BAR_SECTION] = OVERLAY_SECTION,   [BAR_MEASURE] = OVERLAY_MEASURE,
-		[BAR_LARGE] = OVERLAY_LARGE,       [BAR_REACH] = OVERLAY_REACH,
-		[BAR_LANGUAGE] = OVERLAY_LANGUAGE, [BAR_LANGUAGES] = OVERLAY_LANGUAGES,
+		[BAR_HOME] = OVERLAY_HOME,           [BAR_BACK] = OVERLAY_BACK,
+		[BAR_HELP] = OVERLAY_HELP,           [BAR_SEARCH] = OVERLAY_SEARCH,
+		[BAR_TOURS] = OVERLAY_TOURS,         [BAR_LIGHT] = OVERLAY_LIGHT,
+		[BAR_SECTION] = OVERLAY_SECTION,     [BAR_MEASURE] = OVERLAY_MEASURE,
+		[BAR_WALK] = OVERLAY_WALK,           [BAR_LARGE] = OVERLAY_LARGE,
+		[BAR_REACH] = OVERLAY_REACH,         [BAR_LANGUAGE] = OVERLAY_LANGUAGE,
+		[BAR_LANGUAGES] = OVERLAY_LANGUAGES,
 	};
 	const struct bar_view_button *button = button_at(view, x_px - (float)screen->bar.x_px);
 	struct overlay_action action = { .kind = OVERLAY_SWALLOWED, .part = -1 };
@@ -175,12 +178,12 @@ static void draw_button(cairo_t *context, const struct bar_view *view,
 			const struct languages *languages, bool on, bool dim)
 {
 	static const enum icon icons[] = {
-		[BAR_HOME] = ICON_HOME,           [BAR_BACK] = ICON_RETURN,
-		[BAR_HELP] = ICON_HELP,           [BAR_SEARCH] = ICON_SEARCH,
-		[BAR_TOURS] = ICON_TOUR,          [BAR_LIGHT] = ICON_LIGHT,
-		[BAR_SECTION] = ICON_SECTION,     [BAR_MEASURE] = ICON_MEASURE,
-		[BAR_LARGE] = ICON_LARGE,         [BAR_REACH] = ICON_REACH,
-		[BAR_LANGUAGES] = ICON_LANGUAGES,
+		[BAR_HOME] = ICON_HOME,       [BAR_BACK] = ICON_RETURN,
+		[BAR_HELP] = ICON_HELP,       [BAR_SEARCH] = ICON_SEARCH,
+		[BAR_TOURS] = ICON_TOUR,      [BAR_LIGHT] = ICON_LIGHT,
+		[BAR_SECTION] = ICON_SECTION, [BAR_MEASURE] = ICON_MEASURE,
+		[BAR_WALK] = ICON_WALK,       [BAR_LARGE] = ICON_LARGE,
+		[BAR_REACH] = ICON_REACH,     [BAR_LANGUAGES] = ICON_LANGUAGES,
 	};
 	double x = button->x_px + button->width_px / 2.0, y = view->height_px / 2.0;
 	int inset_px = theme_px(theme, 1.2f);
@@ -206,11 +209,12 @@ static void draw_button(cairo_t *context, const struct bar_view *view,
 static void draw(struct bar_view *view, const struct screen *screen,
 		 const struct languages *languages, const struct bar_view_state *state)
 {
-	const bool on[] = { [BAR_HELP] = state->help,       [BAR_SEARCH] = state->search,
-			    [BAR_TOURS] = state->tours,     [BAR_LARGE] = state->large,
-			    [BAR_LIGHT] = state->light,     [BAR_SECTION] = state->section,
-			    [BAR_MEASURE] = state->measure, [BAR_REACH] = state->reach,
-			    [BAR_LANGUAGE] = false,         [BAR_LANGUAGES] = state->languages };
+	const bool on[] = { [BAR_HELP] = state->help,          [BAR_SEARCH] = state->search,
+			    [BAR_TOURS] = state->tours,        [BAR_LARGE] = state->large,
+			    [BAR_LIGHT] = state->light,        [BAR_SECTION] = state->section,
+			    [BAR_MEASURE] = state->measure,    [BAR_WALK] = state->walk,
+			    [BAR_REACH] = state->reach,        [BAR_LANGUAGE] = false,
+			    [BAR_LANGUAGES] = state->languages };
 	cairo_t *context = sprite_begin(&view->sprite, view->width_px, view->height_px);
 
 	if (!context)

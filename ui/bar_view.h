@@ -10,7 +10,7 @@
 #include "ui/screen.h"
 
 enum { BAR_LANGUAGES_MAX = 8 }; /* side by side; more are behind one button */
-enum { BAR_BUTTONS_MAX = BAR_LANGUAGES_MAX + 10 };
+enum { BAR_BUTTONS_MAX = BAR_LANGUAGES_MAX + 11 };
 
 enum bar_view_button_kind {
 	BAR_HOME,
@@ -21,6 +21,7 @@ enum bar_view_button_kind {
 	BAR_LIGHT,
 	BAR_SECTION,
 	BAR_MEASURE,
+	BAR_WALK,
 	BAR_LARGE,
 	BAR_REACH,
 	BAR_LANGUAGE,
@@ -35,12 +36,12 @@ struct bar_view_button {
 
 /* The buttons that exist beside home, back, help, large type and languages. */
 struct bar_view_has {
-	bool search, tours, light, section, measure, reach;
+	bool search, tours, light, section, measure, walk, reach;
 };
 
 /* The buttons that are highlighted, and back, which is dim without. */
 struct bar_view_state {
-	bool back, help, search, tours, large, reach, light, section, measure, languages;
+	bool back, help, search, tours, large, reach, light, section, measure, walk, languages;
 };
 
 struct bar_view {

@@ -195,6 +195,24 @@ static void draw_tour(cairo_t *c)
 	dot(c, -0.75, 0.7, 0.26);
 }
 
+static void draw_walk(cairo_t *c)
+{
+	dot(c, 0.08, -0.85, 0.2);
+	cairo_move_to(c, 0.02, -0.45); /* the trunk, and the leg behind */
+	cairo_line_to(c, -0.08, 0.15);
+	cairo_line_to(c, -0.55, 0.95);
+	cairo_stroke(c);
+	cairo_move_to(c, -0.08, 0.15); /* the leg in front */
+	cairo_line_to(c, 0.3, 0.5);
+	cairo_line_to(c, 0.42, 0.95);
+	cairo_stroke(c);
+	cairo_move_to(c, -0.55, 0.1); /* the arms */
+	cairo_line_to(c, -0.4, -0.3);
+	cairo_line_to(c, 0.02, -0.45);
+	cairo_line_to(c, 0.3, -0.15);
+	cairo_line_to(c, 0.6, -0.05);
+}
+
 /* A ruler that lies aslant. */
 static void draw_measure(cairo_t *c)
 {
@@ -273,19 +291,19 @@ static void draw_backspace(cairo_t *c)
 void icon_draw(cairo_t *context, enum icon icon, double x, double y, double size)
 {
 	static void (*const drawings[])(cairo_t *) = {
-		[ICON_CLOSE] = draw_close,         [ICON_FORWARD] = draw_forward,
-		[ICON_BACK] = draw_back,           [ICON_HOME] = draw_home,
-		[ICON_HELP] = draw_help,           [ICON_TURN] = draw_turn,
-		[ICON_ZOOM] = draw_zoom,           [ICON_TAP] = draw_tap,
-		[ICON_SEARCH] = draw_search,       [ICON_SPACE] = draw_space,
-		[ICON_LARGE] = draw_large,         [ICON_REACH] = draw_seated,
-		[ICON_TOUR] = draw_tour,           [ICON_LIGHT] = draw_light,
-		[ICON_SECTION] = draw_section,     [ICON_PUSH] = draw_push,
-		[ICON_MEASURE] = draw_measure,     [ICON_WIDEN] = draw_widen,
-		[ICON_NARROW] = draw_narrow,       [ICON_LANGUAGES] = draw_globe,
-		[ICON_RETURN] = draw_return,       [ICON_PAUSE] = draw_pause,
-		[ICON_BACKSPACE] = draw_backspace, [ICON_LISTEN] = draw_listen,
-		[ICON_STOP] = draw_stop,
+		[ICON_CLOSE] = draw_close,     [ICON_FORWARD] = draw_forward,
+		[ICON_BACK] = draw_back,       [ICON_HOME] = draw_home,
+		[ICON_HELP] = draw_help,       [ICON_TURN] = draw_turn,
+		[ICON_ZOOM] = draw_zoom,       [ICON_TAP] = draw_tap,
+		[ICON_SEARCH] = draw_search,   [ICON_SPACE] = draw_space,
+		[ICON_LARGE] = draw_large,     [ICON_REACH] = draw_seated,
+		[ICON_TOUR] = draw_tour,       [ICON_LIGHT] = draw_light,
+		[ICON_SECTION] = draw_section, [ICON_PUSH] = draw_push,
+		[ICON_MEASURE] = draw_measure, [ICON_WALK] = draw_walk,
+		[ICON_WIDEN] = draw_widen,     [ICON_NARROW] = draw_narrow,
+		[ICON_LANGUAGES] = draw_globe, [ICON_RETURN] = draw_return,
+		[ICON_PAUSE] = draw_pause,     [ICON_BACKSPACE] = draw_backspace,
+		[ICON_LISTEN] = draw_listen,   [ICON_STOP] = draw_stop,
 	};
 
 	cairo_save(context);

@@ -26,6 +26,7 @@ enum icon {
 	ICON_LIGHT,   /* a lamp low beside a relief */
 	ICON_SECTION, /* a solid that is cut */
 	ICON_MEASURE, /* a ruler */
+	ICON_WALK,    /* a person who walks */
 	ICON_PUSH,    /* two arrows, to and fro */
 	ICON_WIDEN,   /* arrows out into the corners */
 	ICON_NARROW,

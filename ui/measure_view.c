@@ -36,11 +36,14 @@ void measure_view_finish(struct measure_view *view)
 	sprites_finish(&view->line, 1);
 }
 
-void measure_view_set(struct measure_view *view, const struct overlay_measure *state)
+void measure_view_set(struct measure_view *view, const struct overlay_tools *state)
 {
-	view->is_on = state != NULL;
-	if (state)
-		view->now = *state;
+	view->measures = state && state->on & OVERLAY_TOOL_MEASURE;
+	view->walks = state && state->on & OVERLAY_TOOL_WALK;
+	if (!state)
+		return;
+	view->now = state->measure;
+	view->no_way = state->no_way;
 }
 
 /* ---- words ---- */
@@ -80,18 +83,25 @@ void measure_view_text(char *out, size_t size, const char *language, float lengt
 	snprintf(out, size, "%s ± %s", length_text, error_text);
 }
 
+static const char *hint_of(const struct measure_view *view)
+{
+	if (view->measures)
+		/* Translators: for measuring between them. */
+		return view->now.count == 0 ? N_("Touch two places on the model")
+					    : N_("Touch the second place");
+	return view->no_way ? N_("No way leads there on foot")
+			    /* Translators: the visitor walks through the temple. */
+			    : N_("Touch the floor to walk there");
+}
+
 static void say(const struct measure_view *view, const char *language,
 		char text[MEASURE_TEXT_BYTES])
 {
-	if (view->now.count >= 2)
+	if (view->measures && view->now.count >= 2)
 		measure_view_text(text, MEASURE_TEXT_BYTES, language, view->now.length_m,
 				  view->now.error_m);
 	else
-		snprintf(text, MEASURE_TEXT_BYTES, "%s",
-			 translate(language, view->now.count == 0
-						     /* Translators: for measuring between them. */
-						     ? N_("Touch two places on the model")
-						     : N_("Touch the second place")));
+		snprintf(text, MEASURE_TEXT_BYTES, "%s", translate(language, hint_of(view)));
 }
 
 /* ---- places ---- */
@@ -111,7 +121,7 @@ static void knob_of(const struct measure_view *view, const struct screen *screen
 
 static bool shows_end(const struct measure_view *view, unsigned end)
 {
-	return view->is_on && end < view->now.count && view->now.in_sight[end];
+	return view->measures && end < view->now.count && view->now.in_sight[end];
 }
 
 enum overlay_handle measure_view_handle_at(const struct measure_view *view,
@@ -234,7 +244,7 @@ bool measure_view_update(struct measure_view *view, const struct screen *screen,
 {
 	char text[MEASURE_TEXT_BYTES];
 
-	view->fade.on = view->is_on && shows;
+	view->fade.on = (view->measures || view->walks) && shows;
 	if (view->fade.on) {
 		say(view, screen->theme->language, text);
 		if (view->dirty || view->line.revision == 0)

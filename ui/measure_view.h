@@ -1,5 +1,6 @@
-/* What is measured on the model: two ends with knobs that a finger can drag, a line between them,
- * and above the scene how long it is and how exact that is, or what to touch next. */
+/* What is measured on the model: two ends with knobs that a finger can drag, and a line between
+ * them. At the top it says how long that is and how exact, or what to touch next, to measure or to
+ * walk. */
 #ifndef GOPURA_UI_MEASURE_VIEW_H
 #define GOPURA_UI_MEASURE_VIEW_H
 
@@ -13,8 +14,8 @@ enum { MEASURE_TEXT_BYTES = 160 };
 
 struct measure_view {
 	struct overlay_measure now;
-	struct fade fade; /* on: the tool is on and nothing takes the whole panel */
-	bool is_on;
+	struct fade fade; /* on: there is something to say and nothing takes the whole panel */
+	bool measures, walks, no_way;
 	bool dirty; /* type or language changed */
 	char text[MEASURE_TEXT_BYTES];
 	int drawn_width_px; /* of the scene for which the text was drawn */
@@ -25,8 +26,8 @@ struct measure_view {
 void measure_view_init(struct measure_view *view, uint32_t *next_id);
 void measure_view_finish(struct measure_view *view);
 
-/* Sets what is shown; copied. NULL: the tool is off. */
-void measure_view_set(struct measure_view *view, const struct overlay_measure *state);
+/* Sets what is shown; copied. NULL: no tool is on. */
+void measure_view_set(struct measure_view *view, const struct overlay_tools *state);
 /* Writes a length with its error, as "2.35 m ± 2 cm". The error is rounded up to one digit, and the
  * length has no digits below it. Lengths from 1 m on are in metres, from 1 cm on in centimetres;
  * below that in millimetres. The decimal sign is that of the language. */

@@ -29,6 +29,7 @@ static void lay_out_bar(struct overlay *overlay)
 		.light = overlay->tools.offered & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.offered & OVERLAY_TOOL_SECTION,
 		.measure = overlay->tools.offered & OVERLAY_TOOL_MEASURE,
+		.walk = overlay->tools.offered & OVERLAY_TOOL_WALK,
 		.reach = screen_offers_reach(&screen),
 	};
 
@@ -475,9 +476,7 @@ void overlay_show_tools(struct overlay *overlay, const struct overlay_tools *sta
 	const unsigned changed = overlay->tools.now.on ^ state->on;
 
 	overlay->tools.now = *state;
-	measure_view_set(&overlay->measure, overlay->tools.fit && state->on & OVERLAY_TOOL_MEASURE
-						    ? &state->measure
-						    : NULL);
+	measure_view_set(&overlay->measure, overlay->tools.fit ? state : NULL);
 	if (!changed)
 		return;
 	overlay->tools.dirty = overlay->callouts.dirty = true;
@@ -698,6 +697,7 @@ static void update_bar(struct overlay *overlay, const struct screen *screen)
 		.light = overlay->tools.now.on & OVERLAY_TOOL_LIGHT,
 		.section = overlay->tools.now.on & OVERLAY_TOOL_SECTION,
 		.measure = overlay->tools.now.on & OVERLAY_TOOL_MEASURE,
+		.walk = overlay->tools.now.on & OVERLAY_TOOL_WALK,
 		.languages = overlay->languages_view.fade.on,
 	};
 

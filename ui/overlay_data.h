@@ -50,6 +50,7 @@ enum overlay_tool {
 	OVERLAY_TOOL_LIGHT = 1,
 	OVERLAY_TOOL_SECTION = 2,
 	OVERLAY_TOOL_MEASURE = 4,
+	OVERLAY_TOOL_WALK = 8,
 };
 
 /* What is measured from point to point. */
@@ -69,6 +70,7 @@ struct overlay_tools {
 	float turn_rad;    /* direction of the part cut away, from up to the left */
 	float push;        /* offset of the cut in that direction; 1 and -1 at the ring */
 	struct overlay_measure measure;
+	bool no_way; /* no way on foot leads to what was touched last */
 };
 
 /* Settings of one visitor; they are reset for the next one. */

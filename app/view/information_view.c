@@ -282,7 +282,8 @@ static int create_overlay(struct information_view *view)
 
 _Static_assert((int)INFO_TOOL_LIGHT == (int)OVERLAY_TOOL_LIGHT &&
 		       (int)INFO_TOOL_SECTION == (int)OVERLAY_TOOL_SECTION &&
-		       (int)INFO_TOOL_MEASURE == (int)OVERLAY_TOOL_MEASURE,
+		       (int)INFO_TOOL_MEASURE == (int)OVERLAY_TOOL_MEASURE &&
+		       (int)INFO_TOOL_WALK == (int)OVERLAY_TOOL_WALK,
 	       "one set of tools");
 
 static void give_database(struct information_view *view, struct bytes object)

@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "geometry/foot_way.h"
 #include "geometry/solid_space.h"
 #include "geometry/vec.h"
 
@@ -20,6 +21,17 @@
 #define MARGIN_SHARE       0.005f /* of KEEP_OFF_M: where the eye stops before its space ends */
 #define FAR_SHARE          2.5f   /* largest distance of the eye, in half diagonals of the model */
 #define FAR_OVER_HOME      1.1f   /* or in distances of the first view, if more */
+#define STANDING_M         1.6f   /* the eye's height on foot */
+#define STANDS_M           0.5f   /* so far above that it still stands there */
+#define WALK_M_PER_S       3.0f   /* brisk: visitors wait */
+#define WALK_MS_MAX        12000.0f
+#define AHEAD_M            2.0f   /* what a walk looks at on its way */
+#define TURN_MS            350.0f /* in which it has turned there, but for a third */
+#define PACE_M             2.0f   /* a pinch by a factor of e walks so far */
+#define FOOT_STEP_M        0.3f
+#define VIEW_M             1.5f /* what is farther off is seen as well as anything */
+
+enum { HEADINGS = 16 };
 
 static void view_direction(const struct navigator *nav, float out[3])
 {
@@ -194,6 +206,53 @@ void navigator_grab(struct navigator *nav, const float pivot_m[3])
 	vec_copy(nav->pivot_m, pivot_m);
 }
 
+/* ---- on foot */
+
+static struct foot foot_of(const struct navigator *nav)
+{
+	return (struct foot){ .solid = solid_of(nav),
+			      .ground_m = nav->options.box_min_m[2],
+			      .height_m = STANDING_M };
+}
+
+static bool walks_now(const struct navigator *nav)
+{
+	return nav->on_foot && solid_of(nav);
+}
+
+/* As if the picture were held by the finger. */
+static void look_around(struct navigator *nav, float dx_px, float dy_px, float height_px)
+{
+	const float radians_per_px = nav->options.fov_deg * (float)M_PI / 180 / height_px;
+
+	nav->yaw += dx_px * radians_per_px;
+	nav->pitch = clamp(nav->pitch + dy_px * radians_per_px, -PITCH_MAX, PITCH_MAX);
+}
+
+/* Steps by a distance forward and to the right, as far as there is a floor. */
+static void step_on(struct navigator *nav, float forward_m, float right_m)
+{
+	const struct foot foot = foot_of(nav);
+	const float x = forward_m * cosf(nav->yaw) + right_m * sinf(nav->yaw);
+	const float y = forward_m * sinf(nav->yaw) - right_m * cosf(nav->yaw);
+	const int steps = (int)ceilf(hypotf(x, y) / FOOT_STEP_M);
+	struct foot_stance at;
+
+	if (!foot_stand(&foot, nav->eye_m, INFINITY, &at))
+		return;
+	for (int i = 0; i < steps; i++) {
+		const float by_x = x / (float)steps, by_y = y / (float)steps;
+
+		/* Along a wall only one of the two leads on. */
+		if (!foot_step(&foot, &at, at.eye_m[0] + by_x, at.eye_m[1] + by_y, &at) &&
+		    !foot_step(&foot, &at, at.eye_m[0] + by_x, at.eye_m[1], &at) &&
+		    !foot_step(&foot, &at, at.eye_m[0], at.eye_m[1] + by_y, &at))
+			break;
+	}
+	vec_copy(nav->eye_m, at.eye_m);
+	keep_in_bounds(nav, nav->eye_m);
+}
+
 /* Turns eye and view rigidly about the pivot, so that the pivot stays where it is on the panel.
  * Where a wall or the ground holds the eye, the view does not turn either. */
 static void turn_about_pivot(struct navigator *nav, float yaw_by, float pitch_by)
@@ -224,6 +283,10 @@ void navigator_turn(struct navigator *nav, float dx_px, float dy_px, float heigh
 {
 	const float radians_per_px = (float)M_PI / height_px;
 
+	if (walks_now(nav)) {
+		look_around(nav, dx_px, dy_px, height_px);
+		return;
+	}
 	turn_about_pivot(nav, -dx_px * radians_per_px, dy_px * -radians_per_px);
 }
 
@@ -234,6 +297,15 @@ void navigator_pinch(struct navigator *nav, float scale, float dx_px, float dy_p
 	float direction[3], right[3], up[3], arm[3], eye[3], depth;
 
 	leave_stone(nav);
+	if (walks_now(nav)) {
+		const float forward =
+			scale > 0 && isfinite(scale) ? logf(clamp(scale, 0.2f, 5)) : 0;
+
+		step_on(nav, PACE_M * forward, -PACE_M * 2 * dx_px / height_px);
+		look_around(nav, 0, dy_px, height_px);
+		nav->yaw += twist;
+		return;
+	}
 	if (scale > 0 && isfinite(scale)) {
 		vec_sub(arm, nav->eye_m, nav->pivot_m);
 		vec_scale(arm, 1 / clamp(scale, 0.2f, 5), arm);
@@ -298,7 +370,76 @@ void navigator_fly(struct navigator *nav, const float eye_m[3], const float targ
 	angles_of(solid_way_end_m(&nav->way), target_m, &nav->to_yaw, &nav->to_pitch);
 	turn = remainderf(nav->to_yaw - nav->from_yaw, 2 * (float)M_PI); /* the shorter way round */
 	nav->to_yaw = nav->from_yaw + turn;
+	nav->walks = false;
 	nav->flight_ms = nav->flight_left_ms = fmaxf(duration_ms * clamp(longer, 1, LONGER_MAX), 1);
+}
+
+void navigator_set_on_foot(struct navigator *nav, bool on_foot)
+{
+	nav->on_foot = on_foot;
+}
+
+/* Returns the heading nearest to the given one in which somebody at a place sees something of it,
+ * and does not stand before a wall. */
+static float open_heading(const struct navigator *nav, const float eye_m[3], float heading)
+{
+	float best = heading, best_score = -INFINITY;
+
+	for (int i = 0; i < HEADINGS; i++) {
+		const float turn =
+			2 * (float)M_PI / HEADINGS * (float)((i + 1) / 2) * (i % 2 ? 1.0f : -1.0f);
+		const float direction[3] = { cosf(heading + turn), sinf(heading + turn), 0 };
+		int axis;
+		const float score =
+			reach(nav, eye_m, direction, VIEW_M, &axis) / VIEW_M - 0.2f * fabsf(turn);
+
+		if (score > best_score) {
+			best_score = score;
+			best = heading + turn;
+		}
+	}
+	return best;
+}
+
+/* The heading of a way's end: where its last part leads. */
+static float last_heading(const struct navigator *nav)
+{
+	const float length_m = solid_way_length_m(&nav->way), *end = solid_way_end_m(&nav->way);
+	float before[3];
+
+	solid_way_at(&nav->way, vec_most(1 - AHEAD_M / vec_most(length_m, AHEAD_M), 0), before);
+	return atan2f(end[1] - before[1], end[0] - before[0]);
+}
+
+bool navigator_walk(struct navigator *nav, const float touched_m[3])
+{
+	const struct foot foot = foot_of(nav);
+	struct foot_stance from, to;
+
+	if (!foot.solid || !foot_stand_at(&foot, touched_m, nav->eye_m, &to))
+		return false;
+	stop(nav);
+	leave_stone(nav);
+	if (!foot_stand(&foot, nav->eye_m, INFINITY, &from) ||
+	    nav->eye_m[2] > from.eye_m[2] + STANDS_M) {
+		float ahead[3];
+
+		const float heading = open_heading(nav, to.eye_m, nav->yaw);
+
+		vec_copy(ahead, to.eye_m);
+		ahead[0] += cosf(heading);
+		ahead[1] += sinf(heading);
+		navigator_fly(nav, to.eye_m, ahead, 2 * 900);
+		return true;
+	}
+	if (foot_way_plan(&nav->way, &foot, &from, &to) < 0)
+		return false;
+	nav->walks = true;
+	nav->to_yaw = open_heading(nav, solid_way_end_m(&nav->way), last_heading(nav));
+	nav->to_pitch = 0;
+	nav->flight_ms = nav->flight_left_ms =
+		clamp(solid_way_length_m(&nav->way) / WALK_M_PER_S * 1000, 600, WALK_MS_MAX);
+	return true;
 }
 
 void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3])
@@ -327,6 +468,20 @@ bool navigator_is_left_alone(const struct navigator *nav)
 		fabsf(nav->pitch - nav->to_pitch) < 1e-4f);
 }
 
+/* Turns to where the walk leads, as a head does. */
+static void look_ahead(struct navigator *nav, float share, float dt_ms)
+{
+	const float length_m = vec_most(solid_way_length_m(&nav->way), 1e-3f);
+	const float turned = 1 - expf(-dt_ms / TURN_MS);
+	float ahead[3], yaw = nav->to_yaw;
+
+	solid_way_at(&nav->way, vec_least(share + AHEAD_M / length_m, 1), ahead);
+	if (share + AHEAD_M / length_m < 1)
+		yaw = atan2f(ahead[1] - nav->eye_m[1], ahead[0] - nav->eye_m[0]);
+	nav->yaw += turned * remainderf(yaw - nav->yaw, 2 * (float)M_PI);
+	nav->pitch += turned * (nav->to_pitch - nav->pitch);
+}
+
 static void step_flight(struct navigator *nav, float dt_ms)
 {
 	float t;
@@ -335,6 +490,10 @@ static void step_flight(struct navigator *nav, float dt_ms)
 	t = 1 - nav->flight_left_ms / nav->flight_ms;
 	t = t * t * (3 - 2 * t);
 	solid_way_at(&nav->way, t, nav->eye_m);
+	if (nav->walks) {
+		look_ahead(nav, t, dt_ms);
+		return;
+	}
 	nav->yaw = nav->from_yaw + t * (nav->to_yaw - nav->from_yaw);
 	nav->pitch = nav->from_pitch + t * (nav->to_pitch - nav->from_pitch);
 }

@@ -1,8 +1,9 @@
 /* Moves the eye as fingers ask. The pivot is the surface point that was touched: one finger turns
  * about it; two fingers zoom towards it, pan with it and rotate about it. It stays under the
  * fingers. A fling continues after the finger has left and slows down. The eye stays in its allowed
- * space: outside of solid matter, above the ground, and near the model. A flight leads through
- * doors and around walls; where no way is found, the eye is at its end at once.
+ * space: outside of solid matter, above the ground, and near the model. On foot it stays at the
+ * height of somebody who stands: one finger looks around, two fingers step to and fro. A flight
+ * leads through doors and around walls; where no way is found, the eye is at its end at once.
  *
  * Pure except for the callbacks: no time, no scene, no GL. */
 #ifndef GOPURA_APP_VIEW_NAVIGATOR_H
@@ -35,11 +36,13 @@ struct navigator {
 			     up */
 	float pivot_m[3];
 	float fling_px_s[2];
+	bool on_foot;
 
 	/* A flight to another pose; flight_left_ms is 0 if there is none. */
 	float flight_left_ms, flight_ms;
 	struct solid_way way;
 	float from_yaw, to_yaw, from_pitch, to_pitch;
+	bool walks; /* the flight is a walk, and looks where it goes */
 };
 
 /* Copies *options and puts the eye at their home pose. */
@@ -61,6 +64,12 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
  * proportionally longer, at most twice that time. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
+/* Says whether fingers move somebody who walks, from now on. Nothing moves. Without an octree
+ * fingers move as ever. */
+void navigator_set_on_foot(struct navigator *nav, bool on_foot);
+/* Walks to a touched point of a floor, or before what else was touched, as near as there is a way;
+ * from where nobody stands it flies there. Returns false if it cannot; then nothing moves. */
+bool navigator_walk(struct navigator *nav, const float touched_m[3]);
 /* Writes the pose that the eye has, or flies to. */
 void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3]);
 /* Returns whether the eye flies, or nobody has moved it since its last flight arrived. */

@@ -254,7 +254,8 @@ static void do_press_tool(const struct actions *actions, const struct overlay_ac
 {
 	tools_press(actions->tools, action->kind == OVERLAY_LIGHT     ? OVERLAY_TOOL_LIGHT
 				    : action->kind == OVERLAY_SECTION ? OVERLAY_TOOL_SECTION
-								      : OVERLAY_TOOL_MEASURE);
+				    : action->kind == OVERLAY_MEASURE ? OVERLAY_TOOL_MEASURE
+								      : OVERLAY_TOOL_WALK);
 }
 
 static void do_choose_layer(const struct actions *actions, const struct overlay_action *action)
@@ -336,6 +337,7 @@ static const struct {
 	[OVERLAY_LIGHT] = { do_press_tool, 0 },
 	[OVERLAY_SECTION] = { do_press_tool, 0 },
 	[OVERLAY_MEASURE] = { do_press_tool, 0 },
+	[OVERLAY_WALK] = { do_press_tool, 0 },
 	[OVERLAY_CHOICE] = { do_choose_layer, 0 },
 	[OVERLAY_KEY] = { do_press_key, 0 },
 	[OVERLAY_FOUND] = { do_show_found, STEP | HALTS_TOUR },

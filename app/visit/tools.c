@@ -1,5 +1,5 @@
-/* Handles the visitor's tools, the raking light, the section and measuring: switches them on and
- * off, moves them with a finger, and passes them to scene and overlay. */
+/* Handles the visitor's tools, the raking light, the section, measuring and walking: switches them
+ * on and off, moves them with a finger, and passes them to scene and overlay. */
 #include "app/visit/tools.h"
 
 #include <math.h>
@@ -49,6 +49,8 @@ static void log_state(const struct tools *tools)
 		log_debug("app", "measured %.3f m, off by %.3f m",
 			  (double)measuring_length_m(&tools->measure),
 			  (double)measuring_error_m(&tools->measure, scan_error_m(tools)));
+	else if (tools->walks)
+		log_debug("app", "on foot");
 	else if (tools->measure.on)
 		log_debug("app", "measuring, %u ends", tools->measure.count);
 	if (!tools_are_used(tools))
@@ -97,6 +99,11 @@ void tools_press(struct tools *tools, enum overlay_tool tool)
 		rake_place(&now->rake, first_light[0], first_light[1]);
 	} else if (tool == OVERLAY_TOOL_MEASURE) {
 		tools->measure = (struct measuring){ .on = !tools->measure.on };
+		tools->walks = false; /* a tap can mean one of the two */
+	} else if (tool == OVERLAY_TOOL_WALK) {
+		tools->walks = !tools->walks;
+		tools->measure.on = false;
+		tools->no_way = false;
 	} else if (now->section.on) {
 		now->section.on = false;
 	} else {
@@ -108,7 +115,7 @@ void tools_press(struct tools *tools, enum overlay_tool tool)
 
 bool tools_are_used(const struct tools *tools)
 {
-	return tools->now.rake.on || tools->now.section.on || tools->measure.on;
+	return tools->now.rake.on || tools->now.section.on || tools->measure.on || tools->walks;
 }
 
 void tools_end(struct tools *tools)
@@ -118,6 +125,8 @@ void tools_end(struct tools *tools)
 		return;
 	tools->now.rake.on = tools->now.section.on = false;
 	tools->measure = (struct measuring){ 0 };
+	tools->walks = false;
+	navigator_set_on_foot(&tools->env.eye->navigator, false);
 	log_state(tools);
 	redraw_ask(tools->env.redraw);
 }
@@ -207,12 +216,24 @@ static void place_finger(const struct tools *tools, enum overlay_handle handle,
 			     at);
 }
 
+static void walk_to(struct tools *tools, float x_px, float y_px)
+{
+	float at_m[3];
+
+	tools->no_way = !eye_pick(tools->env.eye, tools->env.viewport, x_px, y_px, at_m) ||
+			!navigator_walk(&tools->env.eye->navigator, at_m);
+	log_debug("app", tools->no_way ? "no way on foot" : "walks");
+	redraw_ask(tools->env.redraw);
+}
+
 bool tools_take_tap(struct tools *tools, float x_px, float y_px)
 {
 	struct measured_end end;
 
+	if (tools->walks)
+		walk_to(tools, x_px, y_px);
 	if (!tools->measure.on)
-		return false;
+		return tools->walks;
 	if (eye_measure(tools->env.eye, tools->env.viewport, x_px, y_px, end.at_m, &end.error_m)) {
 		measuring_add(&tools->measure, &end);
 		log_state(tools);
@@ -284,6 +305,8 @@ void tools_show(struct tools *tools)
 	now->rake.on = now->rake.on && offered(tools) & OVERLAY_TOOL_LIGHT;
 	now->section.on = now->section.on && offered(tools) & OVERLAY_TOOL_SECTION;
 	tools->measure.on = tools->measure.on && offered(tools) & OVERLAY_TOOL_MEASURE;
+	tools->walks = tools->walks && offered(tools) & OVERLAY_TOOL_WALK;
+	navigator_set_on_foot(&tools->env.eye->navigator, tools->walks);
 	if (tools->env.shown->scene)
 		scene_use(tools->env.shown->scene, now);
 	if (overlay)
@@ -292,8 +315,10 @@ void tools_show(struct tools *tools)
 			&(struct overlay_tools){
 				.on = (now->rake.on ? OVERLAY_TOOL_LIGHT : 0u) |
 				      (now->section.on ? OVERLAY_TOOL_SECTION : 0u) |
-				      (tools->measure.on ? OVERLAY_TOOL_MEASURE : 0u),
+				      (tools->measure.on ? OVERLAY_TOOL_MEASURE : 0u) |
+				      (tools->walks ? OVERLAY_TOOL_WALK : 0u),
 				.measure = measure_shown(tools),
+				.no_way = tools->no_way,
 				.light_at = { now->rake.at[0], now->rake.at[1] },
 				.turn_rad = now->section.turn_rad - heading(tools),
 				.push = now->section.on ? now->section.push_m / now->section.reach_m

@@ -1,5 +1,5 @@
-/* The visitor's use of the tools that the content offers: a raking light, a section, and measuring.
- * See docs/tools.md. */
+/* The visitor's use of the tools that the content offers: a raking light, a section,
+ * measuring, and walking. See docs/tools.md. */
 #ifndef GOPURA_APP_VISIT_TOOLS_H
 #define GOPURA_APP_VISIT_TOOLS_H
 
@@ -12,7 +12,7 @@
 /* What the tools work with; borrowed. */
 struct tools_env {
 	const struct exhibit *shown;
-	const struct eye *eye;
+	struct eye *eye;
 	const struct viewport *viewport;
 	struct anchors *anchors;
 	struct redraw *redraw;
@@ -22,6 +22,7 @@ struct tools {
 	struct tools_env env;
 	struct scene_tools now;
 	struct measuring measure;
+	bool walks, no_way;       /* no_way: none leads to what was touched last */
 	enum overlay_handle held; /* the handle that a finger holds; one at a time */
 	uint32_t contact;         /* the contact of that finger */
 	float grabbed_at[2]; /* where on the disc the finger came down; how far from a measured end
@@ -37,7 +38,8 @@ void tools_press(struct tools *tools, enum overlay_tool tool);
 void tools_end(struct tools *tools);
 /* Returns whether a tool is on. */
 bool tools_are_used(const struct tools *tools);
-/* A tap on the model: with measuring on it sets an end. Returns false if no tool takes it. */
+/* A tap on the model: with measuring on it sets an end, on foot it leads there. Returns false if no
+ * tool takes it. */
 bool tools_take_tap(struct tools *tools, float x_px, float y_px);
 /* Handles a touch on a tool's disc or on the knob of a measured end. Returns true if the finger
  * belongs to the tool until it lifts.

@@ -304,7 +304,7 @@ static const struct setting settings[CONTENT_SETTINGS] = {
 		1e-6, 10000),
 	NUMBERS("view", "start", "eye X Y Z target X Y Z in metres, two different places",
 		set_start, start_eye_m, -FLT_MAX, FLT_MAX),
-	SETTING("view", "tools", "light, section and measure, or some of them, each once",
+	SETTING("view", "tools", "light, section, measure and walk, or some of them, each once",
 		set_tools),
 	NUMBERS("grid", "points", NULL, settings_whole, grid_points, 4, 32),
 	NUMBERS("grid", "face_px", "128, 256, 512, 1024, 2048 or 4096", set_face_px, face_px, 128,

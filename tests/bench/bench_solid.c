@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "geometry/foot_way.h"
 #include "geometry/solid_space.h"
 #include "geometry/tour_path.h"
 #include "pipeline/import/import.h"
@@ -163,9 +164,43 @@ static void fly(const struct model *model)
 			around_ms[around++] = ms;
 	}
 	printf(", \"flights\": {\"straight\": %d, \"around\": %d, \"none\": %d, "
-	       "\"around_ms\": %.1f, \"around_ms_p95\": %.1f, \"around_ms_most\": %.1f}}",
+	       "\"around_ms\": %.1f, \"around_ms_p95\": %.1f, \"around_ms_most\": %.1f}",
 	       straight, around, none, quantile(around_ms, around, 0.5),
 	       quantile(around_ms, around, 0.95), quantile(around_ms, around, 1));
+}
+
+static void walk(const struct model *model)
+{
+	const struct foot foot = { &model->solid, model->low_m[2], 1.6f };
+	static double walk_ms[FLIGHTS];
+	static struct solid_way way;
+	int arrived = 0, nearer = 0, none = 0;
+
+	for (int i = 0; i < FLIGHTS;) {
+		struct foot_stance from, to;
+		float at[3], to_at[3];
+		double began_us;
+		int rc;
+
+		random_point(model, true, at);
+		random_point(model, true, to_at);
+		if (!foot_stand(&foot, at, INFINITY, &from) ||
+		    !foot_stand(&foot, to_at, INFINITY, &to))
+			continue;
+		began_us = now_us();
+		rc = foot_way_plan(&way, &foot, &from, &to);
+		walk_ms[i++] = (now_us() - began_us) / 1e3;
+		if (rc < 0)
+			none++;
+		else if (vec_distance(solid_way_end_m(&way), to.eye_m) < 0.01f)
+			arrived++;
+		else
+			nearer++;
+	}
+	printf(", \"walks\": {\"arrived\": %d, \"nearer\": %d, \"none\": %d, \"ms\": %.1f, "
+	       "\"ms_p95\": %.1f, \"ms_most\": %.1f}}",
+	       arrived, nearer, none, quantile(walk_ms, FLIGHTS, 0.5),
+	       quantile(walk_ms, FLIGHTS, 0.95), quantile(walk_ms, FLIGHTS, 1));
 }
 
 /* ---- gestures */
@@ -254,6 +289,7 @@ int main(int argc, char **argv)
 		build(&first, cells * first.room_m);
 		ask(&first);
 		fly(&first);
+		walk(&first);
 		printf(",\n");
 	}
 	for (int i = 3; i < argc; i++) {
@@ -263,6 +299,7 @@ int main(int argc, char **argv)
 		build(&model, model.room_m / 2);
 		ask(&model);
 		fly(&model);
+		walk(&model);
 		printf(",\n");
 		solid_finish(&model.solid);
 		mesh_finish(&model.mesh);

@@ -16,7 +16,7 @@ sed -i 's/^tools *=.*/tools = light, lens/' "$work/bad/temple.ini"
 if build/gopura-content publish "$work/bad" --out "$work/release" --keys "$small_keys" 2>"$work/bad.log"; then
 	fail "a tool that does not exist was published"
 fi
-grep -q 'temple.ini, line [0-9]*: tools must be light, section and measure' "$work/bad.log" ||
+grep -q 'temple.ini, line [0-9]*: tools must be light, section, measure and walk' "$work/bad.log" ||
 	{ cat "$work/bad.log"; fail "the tool has no name"; }
 
 # ---- at 960 x 540: the bar's light, its ring, the bar's light again, a touch on what stands in front; the section, the
@@ -88,10 +88,11 @@ P
 # ---- pictures: how much of each differs from the one after the light was switched off again
 python3 tests/e2e/tools.py "$work/shots"
 
-# ---- measuring, where the content offers it: two taps, a knob that is dragged, and off again
+# ---- measuring and walking, where the content offers them: two taps, a knob that is dragged, and off again; down to the
+# gallery's terrace, along it, and a look around
 mkdir "$work/exact"
 cp -r "$small/content" "$small/release" "$work/exact/"
-sed -i -e 's/^tools *=.*/tools = light section measure/' -e 's/^\[model\]/[model]\nerror_mm = 5/' \
+sed -i -e 's/^tools *=.*/tools = light section measure walk/' -e 's/^\[model\]/[model]\nerror_mm = 5/' \
 	"$work/exact/content/temple.ini"
 build/gopura-content publish "$work/exact/content" --out "$work/exact/release" --keys "$small_keys" >"$work/exact.log"
 cat >"$work/measure.touch" <<'T'
@@ -111,24 +112,41 @@ cat >"$work/measure.touch" <<'T'
 13080 up 0
 14500 down 0 408 352
 14580 up 0
+15200 down 0 100 60
+15280 up 0
+16000 down 0 252 517
+16080 up 0
+17500 down 0 480 400
+17580 up 0
+23000 down 0 480 400
+23080 up 0
+29000 down 0 300 300
+29100 move 0 360 300
+29200 move 0 420 300
+29300 move 0 420 300
+29400 up 0
 T
-printf '%s\n' '6000 hint' '12500 measured' '16000 after' >"$work/measure-shots.txt"
+printf '%s\n' '6000 hint' '12500 measured' '15800 after' '22500 down' '28500 along' '31000 around' >"$work/measure-shots.txt"
 build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless \
 	--size 960x540 --release "$work/exact/release" --trust "$work/exact/release/root/1.json" \
 	--state "$work/exact/state" --log debug --touch-replay "$work/measure.touch" --capture "$work/measure" \
 	--shots "$work/measure-shots.txt" >"$work/measure.json" 2>"$work/measure.log" ||
 	{ tail -n 20 "$work/measure.log"; fail "the kiosk ended with an error"; }
-grep -E 'app: (meas|no tools|card)' "$work/measure.log"
+grep -E 'app: (meas|no tools|card|on foot|walks|no way)' "$work/measure.log"
 python3 - "$work/measure.log" <<'P'
 import re
 import sys
 
 log = open(sys.argv[1]).read()
-said = re.findall(r"app: (measuring, \d|measured|no tools|card)", log)
-assert said == ["measuring, 0", "measuring, 1", "measured", "measured", "no tools", "card"], said
+said = re.findall(r"app: (measuring, \d|measured|no tools|card|on foot|walks|no way)", log)
+assert said == ["measuring, 0", "measuring, 1", "measured", "measured", "no tools", "card", "on foot", "walks", "walks"], said
 lengths = [tuple(map(float, m)) for m in re.findall(r"app: measured (\S+) m, off by (\S+) m", log)]
 (first, error), (dragged, _) = lengths
 # Along the gallery's roof, 42 m wide in all; neither more exact than the scan nor a guess.
 assert 5 < first < 15 and dragged > first + 1, lengths
 assert 0.005 * 2**0.5 < error < 0.3, lengths
+# Somebody 1.6 m tall on the terrace, whose floor is even.
+eyes = [tuple(map(float, m)) for m in re.findall(r"app: eye at (\S+) (\S+) (\S+),", log[log.rindex("app: walks"):])]
+assert len(eyes) > 5 and all(abs(z - eyes[0][2]) < 0.05 for x, y, z in eyes), eyes
+assert abs(eyes[-1][0] - eyes[0][0]) > 5, eyes
 P

@@ -477,6 +477,47 @@ static void going_home_leads_to_where_it_began_however_far(void **state)
 	CHECK(vec_distance(nav.eye_m, options.home_eye_m) < 1e-3f);
 }
 
+/* On foot: fingers look around and step, and nothing lifts anybody off the floor. */
+static void on_foot_one_stays_on_the_floor(void **state)
+{
+	const struct navigator_options options = at_temple();
+	const float floor_m[3] = { -14, -12, 1 }, inside_m[3] = { 2, 3, 1 };
+	struct navigator nav;
+	float was[3];
+
+	(void)state;
+	navigator_init(&nav, &options);
+	navigator_set_on_foot(&nav, true);
+	CHECK(navigator_walk(&nav, floor_m)); /* from the air: a flight */
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		CHECK(solid_is_free(&built, nav.eye_m));
+	CHECK(hypotf(nav.eye_m[0] - floor_m[0], nav.eye_m[1] - floor_m[1]) < 1);
+	vec_copy(was, nav.eye_m);
+	navigator_grab(&nav, middle);
+	navigator_turn(&nav, 300, 100, HEIGHT_PX);
+	navigator_fling(&nav, 900, 0);
+	while (navigator_step(&nav, 16, HEIGHT_PX))
+		;
+	CHECK(vec_distance(nav.eye_m, was) == 0);
+	navigator_look(&nav, was, (const float[3]){ was[0] + 1, was[1], was[2] });
+	navigator_pinch(&nav, 1.5f, 0, 0, 0, HEIGHT_PX);
+	CHECK(nav.eye_m[0] > was[0] + 0.5f && fabsf(nav.eye_m[1] - was[1]) < 0.01f);
+	CHECK(navigator_walk(&nav, inside_m)); /* round the temple and through its door */
+	vec_copy(was, nav.eye_m);
+	while (navigator_step(&nav, 16, HEIGHT_PX)) {
+		CHECK(solid_is_free(&built, nav.eye_m) && fabsf(nav.eye_m[2] - was[2]) < 0.5f);
+		CHECK(vec_distance(nav.eye_m, was) < 40);
+	}
+	CHECK(hypotf(nav.eye_m[0] - inside_m[0], nav.eye_m[1] - inside_m[1]) < 1.5f);
+	for (int i = 0; i < 500; i++) {
+		navigator_pinch(&nav, i % 2 ? 0.7f : 1.6f, (float)(i % 7) * 20, 0, 0.3f, HEIGHT_PX);
+		CHECK(solid_is_free(&built, nav.eye_m) && nav.eye_m[2] < was[2] + 1);
+	}
+	navigator_set_on_foot(&nav, false);
+	navigator_turn(&nav, 100, 0, HEIGHT_PX);
+	CHECK(nav.eye_m[2] < 20);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -496,6 +537,7 @@ int main(void)
 		cmocka_unit_test(an_eye_in_stone_comes_out),
 		cmocka_unit_test(an_eye_slides_along_a_wall),
 		cmocka_unit_test(no_hand_brings_an_eye_into_stone_or_holds_it_there),
+		cmocka_unit_test(on_foot_one_stays_on_the_floor),
 		cmocka_unit_test(knows_whether_somebody_moved_it_since_a_flight),
 		cmocka_unit_test(a_small_model_is_approached_as_near_as_a_large_one),
 		cmocka_unit_test(going_home_leads_to_where_it_began_however_far),

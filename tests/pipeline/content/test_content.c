@@ -143,7 +143,7 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "start", "[view]\nstart = 1 2 3 1 2 3\n", "two different places" },
 		{ "start", "[view]\nstart = 1e39 2 3 1 2 3\n", "two different places" },
 		{ "tools", "[view]\n\ntools = light, lens\n",
-		  "line 3: tools must be light, section and measure, or some of them, each once, not "
+		  "line 3: tools must be light, section, measure and walk, or some of them, each once, not "
 		  "'light, lens'" },
 		{ "error", "[model]\nerror_mm = 0\n", "millimetres above 0" },
 		{ "measure", "[model]\nscans = tower.ply\n[view]\ntools = measure\n",

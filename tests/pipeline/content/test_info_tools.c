@@ -31,7 +31,8 @@ static unsigned tools_of(struct bytes image)
 
 static void gives_back_the_tools_of_the_content(void **state)
 {
-	static const unsigned all = INFO_TOOL_LIGHT | INFO_TOOL_SECTION | INFO_TOOL_MEASURE;
+	static const unsigned all =
+		INFO_TOOL_LIGHT | INFO_TOOL_SECTION | INFO_TOOL_MEASURE | INFO_TOOL_WALK;
 	struct info_built built;
 
 	(void)state;
