@@ -7,6 +7,7 @@
                                parts are separated by /), signs it with the keys of its type and puts it back
     rename FILE FILE           the same content under another name
     chain                      makes timestamp and snapshot name the files that are there
+    delegate ROLE              the targets become those of a role whose key is KEYS/ROLE.key
     root MEMBER=JSON...        the next root, signed by root.key, into KEYS/tuf and RELEASE/tuf
 
 FILE is below RELEASE/tuf. Keys are files of KEYS: root.key, release.key, timestamp.key.
@@ -92,6 +93,27 @@ def chain():
     put(timestamp, signed(stamp, "timestamp"))
 
 
+def delegate(role):
+    targets, snapshot = content_of(newest("targets")), content_of(newest("snapshot"))
+    key, version = Key(keys / f"{role}.key"), targets["version"] + 1
+    put(tuf / f"1.{role}.json", signed({**targets, "version": 1}, role))
+    targets |= {
+        "version": version,
+        "targets": {},
+        "delegations": {
+            "keys": {key.id: key.entry},
+            "roles": [
+                {"name": role, "keyids": [key.id], "threshold": 1, "paths": ["release.json"], "terminating": True}
+            ],
+        },
+    }
+    put(tuf / f"{version}.targets.json", signed(targets, "release"))
+    snapshot |= {"version": version}
+    snapshot["meta"][f"{role}.json"] = describe(tuf / f"1.{role}.json", 1)
+    put(tuf / f"{version}.snapshot.json", signed(snapshot, "release"))
+    chain()
+
+
 def root(*changes):
     last = newest("root")
     content = content_of(last)
@@ -110,4 +132,4 @@ def root(*changes):
 
 
 command, *arguments = sys.argv[3:]
-{"set": set_members, "rename": rename, "chain": chain, "root": root}[command](*arguments)
+{"set": set_members, "rename": rename, "chain": chain, "delegate": delegate, "root": root}[command](*arguments)

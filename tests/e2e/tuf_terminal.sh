@@ -66,5 +66,14 @@ publish "on a stick"
 cp -a "$release" "$work/media/release"
 wait_for 60 "the release on the stick" said field 'is on the stick: on a stick'
 wait_for 60 "the release on the stick" shown field 2
+
+# ---- the release is of a role to which the targets delegate, with a key of its own
+cp -a "$release" "$work/next"
+release=$work/next publish "of a role"
+sed "s/[0-9a-f]\{64\}/$(sha256sum </dev/null | cut -c 1-64)/" "$keys/release.key" >"$keys/temple-a.key"
+tests/e2e/tuf_sign.py "$keys" "$work/next" delegate temple-a
+serve "$work/next" "$work/server" "$port" # again, where it was
+wait_for 60 "a release that is delegated" shown field 3
+said field 'release 7 is published: of a role' || fail "another release"
 stop_terminal field
 stop_terminal fresh
