@@ -38,7 +38,7 @@ async function measure() {
   await draw([[-0.1, 0]]);
   await browser.until(`${text} === "Click the second place."`, "the first end");
   await draw([[0.1, 0]]);
-  await browser.until(`/^\\d[\\d.]* (m|cm) ± \\d+ (cm|mm), without the scan's own error/.test(${text})`, "a length");
+  await browser.until(`/^\\d[\\d.]* (m|cm) ± \\d+ (cm|mm)$/.test(${text})`, "a length");
   const length = await browser.evaluate(text);
   await browser.evaluate(`document.querySelector("#stage").focus()`);
   await browser.key("ArrowLeft", 0, 37);

@@ -14,9 +14,12 @@ fail() {
 # that release, sign with its keys: --keys "$small_keys".
 small=build/e2e/small small_keys=build/e2e/small/keys
 export XDG_CONFIG_HOME=$PWD/build/e2e/config # nothing is written into the home
+# The bar of the tests' terminals is that of two tools: recorded fingers know where its buttons are.
+two_tools() { sed -i 's/^tools *=.*/tools = light section/' "$1/temple.ini"; }
 small_release() {
 	[ -z "${RELEASES_MADE:-}" ] || return 0 # by the runner, whose tests run beside one another
 	demo/make-content.sh "$small/content" 200000
+	two_tools "$small/content"
 	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' -e '/^effort/d' \
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
 	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
@@ -33,6 +36,7 @@ demo=build/e2e/demo
 demo_release() {
 	[ -z "${RELEASES_MADE:-}" ] || return 0 # as above
 	demo/make-content.sh "$demo/content" 500000
+	two_tools "$demo/content"
 	sed -i 's/^face_px *=.*/face_px = 1024/' "$demo/content/temple.ini"
 	build/gopura-content build "$demo/content" --out "$demo/release" --keys "$demo/keys"
 }

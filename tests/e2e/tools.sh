@@ -92,7 +92,7 @@ python3 tests/e2e/tools.py "$work/shots"
 # gallery's terrace, along it, and a look around
 mkdir "$work/exact"
 cp -r "$small/content" "$small/release" "$work/exact/"
-sed -i -e 's/^tools *=.*/tools = light section measure walk/' -e 's/^\[model\]/[model]\nerror_mm = 5/' \
+sed -i -e 's/^tools *=.*/tools = light section measure walk/' -e 's/^error_mm *=.*/error_mm = 5/' \
 	"$work/exact/content/temple.ini"
 build/gopura-content publish "$work/exact/content" --out "$work/exact/release" --keys "$small_keys" >"$work/exact.log"
 cat >"$work/measure.touch" <<'T'
