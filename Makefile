@@ -112,7 +112,7 @@ torture: all $(BUILD)/.test-deps ## every allocation and every call on a file fa
 	@SAMPLES=$(or $(SAMPLES),0) USES="$(USES)" bash tests/e2e/torture.sh
 
 golden: all $(BUILD)/.test-deps ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
-	@LANGUAGES="$(LANGUAGES)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
+	@LANGUAGES="$(or $(LANGUAGES),en km ja ar)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
 image: all ## the bootable disk image of a terminal, build/image/gopura.img
 	@./deps.sh image/tools.txt
