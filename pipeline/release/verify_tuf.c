@@ -64,8 +64,15 @@ int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_
 	buffer_init(&source.root, METADATA_FILE_BYTES_MAX);
 	rc = release_reader_file(walk->reader, "tuf/1.root.json", &source.root);
 	if (rc == -ENOENT) { /* not signed in this form */
+		const uint32_t last = walk->report->release.tuf_root;
+
 		buffer_finish(&source.root);
-		return 0;
+		return last == 0 ? 0
+				 : diagnostics_add(&walk->report->diagnostics, -ENOENT, "tuf", 0,
+						   "release.json says that there are roots up to "
+						   "tuf/%u.root.json, and the first is missing: "
+						   "publish again",
+						   last);
 	}
 	if (rc < 0)
 		why = release_reader_why(walk->reader);

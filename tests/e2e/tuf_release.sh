@@ -53,6 +53,11 @@ cp "$release/tuf/1.targets.json" "$release/tuf/2.targets.json"
 grep -q 'tuf: targets' "$work/log" || { cat "$work/log"; fail "verify does not name the file"; }
 cp "$work/aside" "$release/tuf/2.targets.json"
 
+mv "$release/tuf/1.root.json" "$work/aside"
+! "$content" verify "$release" >"$work/log" 2>&1 || fail "verify takes a release whose terminals find no first root"
+grep -q 'tuf/1.root.json, and the first is missing' "$work/log" || { cat "$work/log"; fail "verify does not name the root"; }
+mv "$work/aside" "$release/tuf/1.root.json"
+
 # ---- another implementation
 [ -d "$deps/tuf" ] || skip "no ../shared/conformance/tuf/deps: python-tuf is not in Debian 12; our own client passed"
 PYTHONPATH=$deps REQUESTS_CA_BUNDLE=$server_ca python3 - "$keys" "$release" "$server_url" "$work/theirs" <<'P'
