@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tests/app/release/tuf_museum.h"
@@ -318,6 +319,45 @@ static void a_root_that_withdraws_the_release_key_clears_the_sequence_floor(void
 	CHECK(look(NOW_S) == 0 && follower.clear == STATE_CLEAR_BOTH_FLOORS);
 }
 
+/* ---- memory */
+
+static long allocations_left;
+
+static void *failing_malloc(size_t size)
+{
+	return allocations_left-- == 0 ? NULL : malloc(size);
+}
+
+/* cJSON's allocations, one after another, through the first root and a round. */
+static void lives_through_each_allocation_that_fails(void **unused)
+{
+	const struct state_tuf none = { .root = { NULL, 0 } };
+	const struct trust_root root = earlier_root(&root_key, 1);
+	cJSON_Hooks hooks = { failing_malloc, free };
+	long failed = 0;
+
+	(void)unused;
+	for (long n = 0; failed == n; n++) {
+		int rc;
+
+		tuf_follower_finish(&follower);
+		CHECK(tuf_follower_init(&follower, &none) == 0);
+		cJSON_InitHooks(&hooks);
+		allocations_left = n;
+		rc = tuf_follower_pin(&follower, file_of("1.root.json"), &root);
+		if (rc == 0)
+			rc = look(NOW_S);
+		cJSON_InitHooks(NULL);
+		failed += allocations_left < 0;
+		if (rc < 0)
+			CHECK(allocations_left < 0 && follower.why[0]);
+		if (!tuf_follower_is_on(&follower))
+			CHECK(tuf_follower_pin(&follower, file_of("1.root.json"), &root) == 0);
+		CHECK(look(NOW_S) == 0); /* as if nothing had been */
+	}
+	CHECK(failed > 100);
+}
+
 /* ---- time */
 
 static void judges_expiry_only_by_a_clock_that_is_set(void **unused)
@@ -363,6 +403,7 @@ int main(void)
 		IN_A_MUSEUM(a_root_with_the_same_keys_clears_nothing),
 		IN_A_MUSEUM(a_root_that_withdraws_the_timestamp_key_clears_both_floors),
 		IN_A_MUSEUM(a_root_that_withdraws_the_release_key_clears_the_sequence_floor),
+		IN_A_MUSEUM(lives_through_each_allocation_that_fails),
 		IN_A_MUSEUM(judges_expiry_only_by_a_clock_that_is_set),
 		IN_A_MUSEUM(notes_when_the_timestamp_was_signed),
 	};
