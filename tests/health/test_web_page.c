@@ -130,6 +130,26 @@ static void the_page_says_what_is_wrong_and_escapes_what_others_wrote(void **sta
 	CHECK(strstr(body, "line 3: &#39;&#34;&#60;&#38;&#62;&#34;&#39;"));
 }
 
+static void the_page_says_when_what_is_signed_expires(void **state)
+{
+	const char *const timestamp = "gopura_kiosk_trust_timestamp_expires_at_seconds";
+
+	(void)state;
+	CHECK(strstr(body_of(WEB_PAGE_OVERVIEW),
+		     "<th scope=row>Signatures<td>root 2, expires in 2314 days; timestamp 23 days; "
+		     "release 1157 days<"));
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_trust_root_version",
+	       "gopura_kiosk_trust_root_version 3\ngopura_kiosk_trust_tuf 1");
+	change(&snapshot, PROGRAM_KIOSK, timestamp,
+	       "gopura_kiosk_trust_timestamp_expires_at_seconds 1699000000");
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_trust_release", ""); /* not known */
+	CHECK(strstr(
+		body_of(WEB_PAGE_OVERVIEW),
+		"root 3 of The Update Framework, expires in 2314 days; timestamp 11 days ago<"));
+	change(&snapshot, PROGRAM_KIOSK, "gopura_kiosk_trust_root_version", ""); /* no root */
+	CHECK(!strstr(body_of(WEB_PAGE_OVERVIEW), "Signatures"));
+}
+
 static void a_page_of_the_longest_texts_fits(void **state)
 {
 	struct buffer *text = &snapshot.answers[PROGRAM_KIOSK].text;
@@ -161,6 +181,7 @@ int main(void)
 		CASE(metrics_are_the_programs_own_and_the_machines),
 		CASE(what_is_not_known_is_not_told),
 		CASE(the_page_says_what_is_wrong_and_escapes_what_others_wrote),
+		CASE(the_page_says_when_what_is_signed_expires),
 		CASE(a_page_of_the_longest_texts_fits),
 	};
 
