@@ -1,5 +1,5 @@
-/* Goes through the blocks in layers along z; the vertices on the edges of two layers are known at a
- * time, so that memory does not grow with the surface. */
+/* Goes through the blocks in layers along the longest axis; the vertices on the edges of two layers
+ * are known at a time, so that memory grows with a section of the surface, not with all of it. */
 #include "pipeline/octree/cube_surface.h"
 
 #include <errno.h>
@@ -30,6 +30,7 @@ struct corner {
 	bool is_known;
 };
 
+/* A block, its place along the axis of layers last. */
 struct place {
 	int32_t at[3];
 };
@@ -40,6 +41,7 @@ struct drawing {
 	const struct cube_surface_options *options;
 	struct mesh mesh;
 	uint32_t vertex_room, triangle_room;
+	int along;              /* the axis of layers */
 	struct map vertices[2]; /* on edges that begin in this layer of blocks, and in the next */
 	struct place *blocks;   /* to be drawn; owned */
 	uint32_t block_count, block_room;
@@ -67,6 +69,31 @@ static int add_block(struct drawing *drawing, int32_t x, int32_t y, int32_t z)
 	if (rc == 0)
 		drawing->blocks[drawing->block_count++] = (struct place){ { x, y, z } };
 	return rc;
+}
+
+/* Chooses the axis of layers, and moves each place along it to the end. */
+static void turn_blocks(struct drawing *drawing)
+{
+	int32_t low[3] = { INT32_MAX, INT32_MAX, INT32_MAX };
+	int32_t high[3] = { INT32_MIN, INT32_MIN, INT32_MIN };
+
+	for (uint32_t i = 0; i < drawing->block_count; i++)
+		for (int k = 0; k < 3; k++) {
+			const int32_t at = drawing->blocks[i].at[k];
+
+			low[k] = at < low[k] ? at : low[k];
+			high[k] = at > high[k] ? at : high[k];
+		}
+	drawing->along = 2;
+	for (int k = 0; k < 2; k++)
+		if ((int64_t)high[k] - low[k] > (int64_t)high[drawing->along] - low[drawing->along])
+			drawing->along = k;
+	for (uint32_t i = 0; i < drawing->block_count; i++) {
+		const struct place block = drawing->blocks[i];
+
+		for (int k = 0; k < 3; k++)
+			drawing->blocks[i].at[k] = block.at[(drawing->along + 1 + k) % 3];
+	}
 }
 
 /* A cube belongs to the block of its lowest corner, so the blocks before one in the field have
@@ -142,6 +169,7 @@ static int list_blocks(struct drawing *drawing)
 		rc = add_unseen_blocks(drawing);
 	if (rc < 0 || drawing->block_count == 0)
 		return rc;
+	turn_blocks(drawing);
 	qsort(drawing->blocks, drawing->block_count, sizeof(*drawing->blocks), compare_blocks);
 	for (uint32_t i = 1; i < drawing->block_count; i++)
 		if (compare_blocks(&drawing->blocks[i], &drawing->blocks[kept]) != 0)
@@ -273,7 +301,7 @@ static int vertex_on(struct drawing *drawing, const int32_t in[3], int edge, uin
 		low[k] = in[k] + (corner >> k & 1);
 		at[k] = drawing->block[k] * SIDE + low[k];
 	}
-	map = &drawing->vertices[low[2] == SIDE];
+	map = &drawing->vertices[low[drawing->along] == SIDE];
 	key = field_key(at) | (map_key)axis << 96;
 	found = map->capacity ? map_get(map, key) : MAP_NONE;
 	if (found != MAP_NONE) {
@@ -379,12 +407,13 @@ static int draw_blocks(struct drawing *drawing)
 	int rc = 0;
 
 	for (uint32_t i = 0; i < drawing->block_count && rc == 0; i++) {
-		const int32_t *block = drawing->blocks[i].at;
-		const int32_t layers = i > 0 ? block[2] - drawing->block[2] : 0;
+		const int32_t *at = drawing->blocks[i].at;
+		const int32_t layers = i > 0 ? at[2] - drawing->blocks[i - 1].at[2] : 0;
 
 		for (int32_t k = 0; k < layers && k < 2; k++)
 			next_layer(drawing);
-		memcpy(drawing->block, block, sizeof(drawing->block));
+		for (int k = 0; k < 3; k++)
+			drawing->block[(drawing->along + 1 + k) % 3] = at[k];
 		rc = draw_block(drawing);
 		spill_pass(i * 64ull);
 	}
