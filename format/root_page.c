@@ -4,7 +4,7 @@
 #include <errno.h>
 #include <math.h>
 
-enum { HAS_STREAM = 1, HAS_SCENERY = 2, HAS_SOLID = 4 };
+enum { HAS_STREAM = 1, HAS_SCENERY = 2, HAS_SOLID = 4, CUT = 8 };
 
 void lattice_fit(struct lattice *lattice, const float box_min_m[3], const float box_max_m[3])
 {
@@ -39,10 +39,10 @@ void root_page_encode(struct buffer *out, const struct root_page *root)
 	buffer_put(out, root->background, sizeof(root->background));
 	buffer_put_u64(out, root->source_triangles);
 	buffer_put_u64(out, root->published_triangles);
-	if (root->has_stream || root->has_scenery || root->has_solid)
+	if (root->has_stream || root->has_scenery || root->has_solid || root->cut)
 		buffer_put_u8(out, (uint8_t)(root->has_stream * HAS_STREAM +
 					     root->has_scenery * HAS_SCENERY +
-					     root->has_solid * HAS_SOLID));
+					     root->has_solid * HAS_SOLID + root->cut * CUT));
 }
 
 static bool read_vector(struct reader *reader, float vector[3])
@@ -77,8 +77,8 @@ static bool is_sane(const struct root_page *root)
 		if (root->box_min_m[axis] > root->box_max_m[axis])
 			return false;
 	}
-	return fabs(sun - 1) < 1e-3 && root->lit <= 1 && root->source_triangles > 0 &&
-	       root->name[0] != '\0';
+	return fabs(sun - 1) < 1e-3 && root->lit <= 1 && root->cut <= ROOT_CUT_MAX &&
+	       root->source_triangles > 0 && root->name[0] != '\0';
 }
 
 int root_page_decode(struct root_page *out, struct bytes payload)
@@ -107,7 +107,8 @@ int root_page_decode(struct root_page *out, struct bytes payload)
 		root.has_stream = (more & HAS_STREAM) != 0;
 		root.has_scenery = (more & HAS_SCENERY) != 0;
 		root.has_solid = (more & HAS_SOLID) != 0;
-		good = good && more > 0 && more <= (HAS_STREAM | HAS_SCENERY | HAS_SOLID);
+		root.cut = more / CUT;
+		good = good && more > 0;
 	}
 	if (reader.failed || reader_left(&reader) > 0 || !good || !is_sane(&root))
 		return -EBADMSG;

@@ -17,6 +17,8 @@ enum {
 	ROOT_CHILDREN_MAX = ROOT_CHILD_COUNT + 4 /* with labels, stream, scenery and octree */
 };
 
+enum { ROOT_CUT_MAX = 4 };
+
 enum {
 	LATTICE_BITS = 16, /* the longest side of most models has 2 to this power of steps */
 	LATTICE_FINE_BITS_MAX = 8, /* and a place is exact as a float */
@@ -49,12 +51,16 @@ struct root_page {
 	float start_eye_m[3], start_target_m[3];
 	float sun[3]; /* unit vector towards the light */
 	uint8_t lit;  /* 1: colour times light (geometry/light.h); 0: the scan's own colours */
-	uint8_t background[3];     /* sRGB behind the model */
+	uint8_t background[3]; /* sRGB behind the model */
+	/* What a section shows where it cuts solid matter: enum substance_kind of
+	 * geometry/substance.h, 0: the section's red; at most ROOT_CUT_MAX. */
+	uint8_t cut;
 	uint64_t source_triangles; /* of the original scan */
 	uint64_t published_triangles;
 	/* 1: there is a stream page (format/stream_page.h), scenery, or an octree of where an eye
-	 * may be. On the wire they are bits 0 to 2 of one byte, which releases without any do not
-	 * have. A program from before there was scenery, or the octree, refuses a release with it.
+	 * may be. On the wire they are bits 0 to 2 of one byte, and cut is bits 3 to 5; releases
+	 * with none of them do not have the byte. A program from before there was one of them
+	 * refuses a release with it.
 	 */
 	uint8_t has_stream, has_scenery, has_solid;
 };

@@ -56,6 +56,7 @@ struct content {
 	struct import_options import;
 	enum content_colours colours;
 	enum substance_kind substance; /* SUBSTANCE_NONE: the weathered stone of the demo temple */
+	enum substance_kind cut; /* what a section shows of solid matter; SUBSTANCE_NONE: red */
 	enum content_lit lit;
 	float sun[3]; /* unit vector towards the light */
 	uint8_t background[3];

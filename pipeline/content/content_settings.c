@@ -88,6 +88,17 @@ static bool set_colours(const struct setting *setting, void *target, const char 
 	return read_colour(value, content->import.default_colour);
 }
 
+static bool set_cut(const struct setting *setting, void *target, const char *value)
+{
+	const enum substance_kind kind = substance_named(value);
+
+	(void)setting;
+	if (kind == SUBSTANCE_KINDS)
+		return false;
+	((struct content *)target)->cut = kind;
+	return true;
+}
+
 static bool set_lit(const struct setting *setting, void *target, const char *value)
 {
 	bool yes;
@@ -296,6 +307,7 @@ static const struct setting settings[CONTENT_SETTINGS] = {
 	SETTING("model", "colours",
 		"scan, procedural, marble, wood, sandstone, laterite, or one colour as #rrggbb",
 		set_colours),
+	SETTING("model", "cut", "marble, wood, sandstone, laterite or none", set_cut),
 	SETTING("model", "lit", "yes or no", set_lit),
 	NUMBERS("model", "sun", "three numbers x y z, pointing to the sun", set_sun, sun, -FLT_MAX,
 		FLT_MAX),

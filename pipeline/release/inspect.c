@@ -1,6 +1,7 @@
 /* Prints summaries of single files: recognises the form by its first bytes, decodes it and prints
  * its main figures. */
 #include "pipeline/release/inspect.h"
+#include "geometry/substance.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -63,6 +64,7 @@ static int print_root(FILE *to, const struct page *page)
 	print_vector(to, root.lit ? "lit, sun" : "not lit, sun", root.sun);
 	fprintf(to, "  background         #%02x%02x%02x\n", root.background[0], root.background[1],
 		root.background[2]);
+	fprintf(to, "  cut shows          %s\n", substance_names[root.cut]);
 	fprintf(to, "  triangles          %" PRIu64 " published of %" PRIu64 ", %.2f %%\n",
 		root.published_triangles, root.source_triangles,
 		100.0 * (double)root.published_triangles / (double)root.source_triangles);

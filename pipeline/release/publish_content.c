@@ -113,6 +113,7 @@ static int fill_root(struct root_page *root, struct scans *scans, const struct m
 	memcpy(root->background, content->background, sizeof(root->background));
 	root->source_triangles = master->source_triangles;
 	root->lit = lit;
+	root->cut = (uint8_t)content->cut;
 	start_view(root->start_eye_m, root->start_target_m, root->box_min_m, root->box_max_m);
 	if (content->has_start) {
 		memcpy(root->start_eye_m, content->start_eye_m, sizeof(root->start_eye_m));

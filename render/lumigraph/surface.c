@@ -7,6 +7,8 @@
 
 #include "geometry/appearance.h"
 #include "geometry/light.h"
+#include "geometry/noise.h"
+#include "geometry/substance.h"
 #include "geometry/vec.h"
 #include "render/lumigraph/aim.h"
 #include "render/plan/plan_quality.h"
@@ -27,6 +29,9 @@ const char surface_vertex_glsl[] =
 	"uniform vec4 u_cut;\n"
 	"varying float v_cut;\n" /* metres in front of the section plane */
 	"#endif\n"
+	"#ifdef CUT_SOLID\n"
+	"varying vec3 v_from;\n" /* metres from the eye */
+	"#endif\n"
 	"#ifdef RAKE\n"
 	"varying vec4 v_rake;\n"
 	"#endif\n"
@@ -40,6 +45,9 @@ const char surface_vertex_glsl[] =
 	"#endif\n"
 	"#ifdef CUT\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
+	"#endif\n"
+	"#ifdef CUT_SOLID\n"
+	"	v_from = p;\n"
 	"#endif\n"
 	"#ifdef RAKE\n"
 	"	v_rake = rake_of(n, a_colour.a, u_sun);\n"
@@ -67,9 +75,9 @@ static const char plain_vertex[] =
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
-/* Visible back faces are where the plane cuts solid matter: one flat colour, as in a section
- * drawing. In programs that look up textures, fragments that are cut away or dissolved are
- * discarded last. */
+/* Visible back faces are where the plane cuts solid matter: the substance that the content
+ * names, where the ray met the plane; or one flat colour, as in a section drawing. In programs that
+ * look up textures, fragments that are cut away or dissolved are discarded last. */
 const char surface_tools_glsl[] =
 	"#ifdef RAKE\n"
 	"uniform vec3 u_rake;\n"
@@ -77,6 +85,23 @@ const char surface_tools_glsl[] =
 	"#endif\n"
 	"#ifdef CUT\n"
 	"varying float v_cut;\n"
+	"#endif\n"
+	"#ifdef CUT_SOLID\n"
+	"uniform vec4 u_stand;\n"  /* the eye; u_cut.w */
+	"uniform float u_grain;\n" /* size of a pixel at a metre */
+	"varying vec3 v_from;\n"
+	/* the colour where the ray meets the plane, if it does so before the surface */
+	"vec3 cut_colour() {\n"
+	"	float share = u_stand.w / (v_cut + u_stand.w);\n"
+	"	vec3 p = share > 0.0 && share < 1.0 ? v_from * share : v_from;\n"
+	"	float size = length(p) * u_grain;\n"
+	"	p += u_stand.xyz;\n"
+	"	return CUT_SOLID(p.x, p.y, p.z, size);\n"
+	"}\n"
+	"#else\n"
+	"vec3 cut_colour() {\n"
+	"	return vec3(0.62, 0.28, 0.15);\n" /* the laterite colour of the theme */
+	"}\n"
 	"#endif\n"
 	"#ifdef FOG\n"
 	"uniform vec4 u_fog;\n" /* colour; how much of it is seen */
@@ -89,7 +114,7 @@ const char surface_tools_glsl[] =
 	"#endif\n"
 	"#ifdef CUT\n"
 	"	if (!gl_FrontFacing)\n"
-	"		colour = vec3(0.62, 0.28, 0.15);\n" /* the laterite colour of the theme */
+	"		colour = cut_colour();\n"
 	"#endif\n"
 	"#ifdef FOG\n"
 	"	float fog = fog_share(length(v_away), u_thick > 0.5);\n"
@@ -279,20 +304,42 @@ static void set_constants(char *out, size_t bytes, const struct tiles *tiles, in
 
 const char *const surface_attributes[] = { "a_position", "a_normal", "a_colour", "a_base", NULL };
 
-const char *const surface_defines[SURFACE_TOOLS] = {
-	[0] = "",
-	[SURFACE_RAKE] = "#define RAKE\n",
-	[SURFACE_CUT] = "#define CUT\n",
-	[SURFACE_RAKE | SURFACE_CUT] = "#define RAKE\n#define CUT\n",
-	[SURFACE_FOG] = "#define FOG\n",
-	[SURFACE_FOG | SURFACE_RAKE] = "#define FOG\n#define RAKE\n",
-	[SURFACE_FOG | SURFACE_CUT] = "#define FOG\n#define CUT\n",
-	[SURFACE_FOG | SURFACE_RAKE | SURFACE_CUT] = "#define FOG\n#define RAKE\n#define CUT\n",
-};
-
-static int init_plain(struct surface_program *p, unsigned tools, const char *dissolve)
+/* The limit of uniforms has no room for a substance beside fog and the raking light. */
+static bool cuts_substance(unsigned tools, unsigned cut)
 {
-	const char *defines = surface_defines[tools], *vertex = "", *fragment = "";
+	const unsigned full = SURFACE_RAKE | SURFACE_FOG;
+
+	return cut > 0 && (tools & SURFACE_CUT) && (tools & full) != full && gl_has_highp();
+}
+
+void surface_define(char *out, unsigned tools, unsigned cut)
+{
+	char substance[50] = "";
+
+	if (cuts_substance(tools, cut))
+		snprintf(substance, sizeof(substance), "#define CUT_SOLID %s_colour\n",
+			 substance_names[cut]);
+	snprintf(out, SURFACE_DEFINES_BYTES, "%s%s%s%s",
+		 tools & SURFACE_RAKE ? "#define RAKE\n" : "",
+		 tools & SURFACE_CUT ? "#define CUT\n" : "",
+		 tools & SURFACE_FOG ? "#define FOG\n" : "", substance);
+}
+
+struct surface_cut_glsl surface_cut_glsl(unsigned tools, unsigned cut)
+{
+	if (!cuts_substance(tools, cut))
+		return (struct surface_cut_glsl){ "", "", false };
+	return (struct surface_cut_glsl){ noise_glsl, substance_glsl, true };
+}
+
+static const char coarse[] = "precision mediump float;\n";
+
+static int init_plain(struct surface_program *p, unsigned tools, unsigned cut, const char *dissolve)
+{
+	const struct surface_cut_glsl solid = surface_cut_glsl(tools, cut);
+	const char *vertex = "", *fragment = "";
+	char defines[SURFACE_DEFINES_BYTES];
+	surface_define(defines, tools, cut);
 	if (tools & SURFACE_RAKE) {
 		vertex = rake_vertex_glsl;
 		fragment = rake_fragment_glsl;
@@ -301,8 +348,9 @@ static int init_plain(struct surface_program *p, unsigned tools, const char *dis
 		.name = "patches",
 		.vertex = (const char *const[]){ defines, light_glsl, vertex, surface_vertex_glsl,
 						 plain_vertex, NULL },
-		.fragment = (const char *const[]){ "precision mediump float;\n", defines, fragment,
-						   appearance_fog_glsl, surface_tools_glsl,
+		.fragment = (const char *const[]){ solid.needs_highp ? gl_fine_fragment : coarse,
+						   defines, fragment, appearance_fog_glsl,
+						   solid.noise, solid.substance, surface_tools_glsl,
 						   dissolve, surface_plain_glsl, NULL },
 		.attributes = surface_attributes,
 	};
@@ -313,22 +361,26 @@ static int init_plain(struct surface_program *p, unsigned tools, const char *dis
 }
 
 static int init_blended(struct surface_program *p, const struct tiles *tiles, int faces,
-			unsigned tools, const char *dissolve)
+			unsigned tools, unsigned cut, const char *dissolve)
 {
-	const char *defines = surface_defines[tools], *vertex = "", *fragment = "";
+	const struct surface_cut_glsl solid = surface_cut_glsl(tools, cut);
+	const char *vertex = "", *fragment = "";
+	char defines[SURFACE_DEFINES_BYTES];
 	char constants[512];
 	if (tools & SURFACE_RAKE) {
 		vertex = rake_vertex_glsl;
 		fragment = rake_fragment_glsl;
 	}
+	surface_define(defines, tools, cut);
 	set_constants(constants, sizeof(constants), tiles, faces);
 	const struct gl_program_source source = {
 		.name = "lumigraph",
 		.vertex = (const char *const[]){ defines, constants, light_glsl, vertex,
 						 surface_vertex_glsl, blended_vertex, NULL },
 		.fragment = (const char *const[]){ gl_fine_fragment, defines, constants, fragment,
-						   appearance_fog_glsl, surface_tools_glsl,
-						   dissolve, blended_fragment, NULL },
+						   appearance_fog_glsl, solid.noise,
+						   solid.substance, surface_tools_glsl, dissolve,
+						   blended_fragment, NULL },
 		.attributes = surface_attributes,
 	};
 	int rc = gl_program_build(&p->program, &source);
@@ -349,8 +401,8 @@ static int init_program(struct surface *surface, unsigned tools, int program)
 	struct surface_program *p = &surface->of[tools][program];
 	const int faces = surface_faces(program);
 	const char *dissolve = program == faces ? surface_whole_glsl : surface_dissolve_glsl;
-	return faces == 0 ? init_plain(p, tools, dissolve)
-			  : init_blended(p, surface->tiles, faces, tools, dissolve);
+	return faces == 0 ? init_plain(p, tools, surface->cut, dissolve)
+			  : init_blended(p, surface->tiles, faces, tools, surface->cut, dissolve);
 }
 
 int surface_init(struct surface *surface, const struct tiles *tiles)
@@ -388,6 +440,8 @@ void surface_find_tools(struct surface_tool_uniforms *out, GLuint program)
 	out->far = glGetUniformLocation(program, "u_far");
 	out->fog = glGetUniformLocation(program, "u_fog");
 	out->thick = glGetUniformLocation(program, "u_thick");
+	out->stand = glGetUniformLocation(program, "u_stand");
+	out->pixel = glGetUniformLocation(program, "u_grain");
 }
 
 void surface_set_tools(const struct surface_tool_uniforms *at, const struct surface_frame *frame)
@@ -402,6 +456,12 @@ void surface_set_tools(const struct surface_tool_uniforms *at, const struct surf
 	}
 	if (at->cut >= 0)
 		glUniform4fv(at->cut, 1, frame->view->cut);
+	if (at->stand >= 0) {
+		const float *eye = frame->view->eye_m;
+
+		glUniform4f(at->stand, eye[0], eye[1], eye[2], frame->view->cut[3]);
+		glUniform1f(at->pixel, 1 / frame->view->focal_px);
+	}
 	if (at->fog >= 0) {
 		glUniform1f(at->far, 1 / fog->range_m);
 		glUniform1f(at->thick, fog->is_exponential ? 1 : 0);
@@ -409,11 +469,29 @@ void surface_set_tools(const struct surface_tool_uniforms *at, const struct surf
 	}
 }
 
+/* Deletes the programs of another release's cut face. */
+static void change_cut(struct surface *surface, uint8_t cut)
+{
+	for (int tools = 0; tools < SURFACE_TOOLS; tools++) {
+		if (!(tools & SURFACE_CUT))
+			continue;
+		for (int i = 0; i < SURFACE_PROGRAMS; i++) {
+			if (surface->of[tools][i].program)
+				glDeleteProgram(surface->of[tools][i].program);
+			surface->of[tools][i].program = 0;
+		}
+		surface->lacks[tools] = false;
+	}
+	surface->cut = cut;
+}
+
 /* Returns the program with the active tools; builds it where it is missing. */
 static const struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
 					 int program)
 {
 	const unsigned tools = surface_tools(frame);
+	if (surface->cut != frame->root->cut)
+		change_cut(surface, frame->root->cut);
 	if (!surface->of[tools][program].program && !surface->lacks[tools])
 		surface->lacks[tools] = init_program(surface, tools, program) < 0;
 	return &surface->of[surface->lacks[tools] ? 0 : tools][program];

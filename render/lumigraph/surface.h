@@ -29,8 +29,10 @@ struct surface_fog {
 
 /* The places of the uniforms that the tools have; -1 where the program lacks one. */
 struct surface_tool_uniforms {
-	GLint rake, cut, far, fog, thick;
+	GLint rake, cut, far, fog, thick, stand, pixel;
 };
+
+enum { SURFACE_DEFINES_BYTES = 160 };
 
 struct surface_program {
 	GLuint program;
@@ -42,7 +44,8 @@ struct surface {
 	struct surface_program of[SURFACE_TOOLS][SURFACE_PROGRAMS];
 	const struct surface_program *used; /* program of the last surface_begin */
 	const struct tiles *tiles;          /* borrowed */
-	bool lacks[SURFACE_TOOLS];          /* the driver refused one: drawn without the tools */
+	uint8_t cut;               /* root_page.cut that the programs with a section have */
+	bool lacks[SURFACE_TOOLS]; /* the driver refused one: drawn without the tools */
 };
 
 /* Builds the programs without tools. tiles gives the texture sizes; it is borrowed and must outlive
@@ -71,14 +74,23 @@ unsigned surface_tools(const struct surface_frame *frame);
 void surface_find_tools(struct surface_tool_uniforms *out, GLuint program);
 void surface_set_tools(const struct surface_tool_uniforms *at, const struct surface_frame *frame);
 
+/* Writes the definitions of a set of tools, of at most SURFACE_DEFINES_BYTES. cut: root_page.cut.
+ */
+void surface_define(char *out, unsigned tools, unsigned cut);
+/* Returns what a fragment shader needs before surface_tools_glsl for those definitions. */
+struct surface_cut_glsl {
+	const char *noise, *substance; /* "": nothing */
+	bool needs_highp;
+};
+struct surface_cut_glsl surface_cut_glsl(unsigned tools, unsigned cut);
+
 /* The GLSL of the cheapest programs, for others that draw surfaces under the same light and tools.
- * A vertex shader is: surface_defines of the tools, light_glsl, rake_vertex_glsl where the tools
+ * A vertex shader is: what surface_define writes, light_glsl, rake_vertex_glsl where the tools
  * have it, surface_vertex_glsl, and a main() that calls unit_normal(), own_colour() and use_tools()
  * and sets v_colour. A fragment shader is: a precision, the defines, rake_fragment_glsl likewise,
- * appearance_fog_glsl, surface_tools_glsl, surface_whole_glsl or surface_dissolve_glsl,
- * surface_plain_glsl or a main() that does the same. Uniforms are
- * those of surface_begin. */
-extern const char *const surface_defines[SURFACE_TOOLS];
+ * appearance_fog_glsl, what surface_cut_glsl says, surface_tools_glsl, surface_whole_glsl or
+ * surface_dissolve_glsl, surface_plain_glsl or a main() that does the same. Uniforms are those of
+ * surface_begin. */
 extern const char surface_vertex_glsl[], surface_tools_glsl[], surface_plain_glsl[];
 extern const char surface_whole_glsl[], surface_dissolve_glsl[];
 extern const char *const surface_attributes[];

@@ -237,7 +237,8 @@ static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
 	const struct pose_node *node = &drawing->pose->nodes[of->node];
 	const struct dissolve_range range = { node->low, node->high };
 	const struct scenery_program *p = scenery_programs_get(
-		&drawing->picture->programs, features_of(drawing, material, range));
+		&drawing->picture->programs, features_of(drawing, material, range),
+		drawing->frame->root->cut);
 	const size_t first = drawing->picture->offsets[mesh].vertex_bytes;
 	const GLsizei stride = sizeof(struct scenery_vertex);
 

@@ -144,14 +144,16 @@ static void find_uniforms(struct scenery_program *p)
 }
 
 /* Writes what the texts ask for. */
-static void define(char *out, size_t bytes, unsigned features)
+static void define(char *out, size_t bytes, unsigned features, unsigned cut)
 {
+	char tools[SURFACE_DEFINES_BYTES];
 	const unsigned kind = features / SCENERY_SUBSTANCE;
 	char solid[40] = "";
 
 	if (kind > 0)
 		snprintf(solid, sizeof(solid), "#define SOLID %s_colour\n", substance_names[kind]);
-	snprintf(out, bytes, "%s%s%s%s%s%s", surface_defines[features % SURFACE_TOOLS],
+	surface_define(tools, features % SURFACE_TOOLS, cut);
+	snprintf(out, bytes, "%s%s%s%s%s%s", tools,
 		 features & SCENERY_BY_PIXEL ? "#define BY_PIXEL\n" : "",
 		 features & SCENERY_GLOSSY ? "#define GLOSSY\n" : "",
 		 features & SCENERY_RELIEF ? "#define RELIEF\n" : "",
@@ -164,16 +166,17 @@ static const char *where(bool is_needed, const char *text)
 	return is_needed ? text : "";
 }
 
-static int build(struct scenery_program *p)
+static int build(struct scenery_program *p, unsigned cut)
 {
 	const unsigned features = p->features;
+	const struct surface_cut_glsl solid = surface_cut_glsl(features % SURFACE_TOOLS, cut);
 	const bool by_pixel = features & SCENERY_BY_PIXEL, rakes = features & SURFACE_RAKE;
 	const bool has_relief = features & SCENERY_RELIEF;
-	const bool has_noise = has_relief || features >= SCENERY_SUBSTANCE;
-	char defines[200];
+	const bool has_noise = has_relief || features >= SCENERY_SUBSTANCE || solid.needs_highp;
+	char defines[SURFACE_DEFINES_BYTES + 160];
 	int rc;
 
-	define(defines, sizeof(defines), features);
+	define(defines, sizeof(defines), features, cut);
 	const char *const vertex_parts[] = { defines,
 					     light_glsl,
 					     appearance_glsl,
@@ -183,7 +186,7 @@ static int build(struct scenery_program *p)
 					     vertex,
 					     NULL };
 	const char *const fragment_parts[] = {
-		by_pixel ? gl_fine_fragment : "precision mediump float;\n",
+		by_pixel || solid.needs_highp ? gl_fine_fragment : "precision mediump float;\n",
 		defines,
 		light_glsl,
 		appearance_glsl,
@@ -226,14 +229,17 @@ static struct scenery_program *find(struct scenery_programs *programs, unsigned 
 		return NULL;
 	p = &programs->all[programs->count++];
 	*p = (struct scenery_program){ .features = features };
-	if (build(p) < 0)
+	if (build(p, programs->cut) < 0)
 		p->program = 0;
 	return p;
 }
 
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
-						   unsigned features)
+						   unsigned features, uint8_t cut)
 {
+	if (programs->cut != cut)
+		scenery_programs_finish(programs);
+	programs->cut = cut;
 	if (!gl_has_highp())
 		features %= SCENERY_SUBSTANCE;
 	if (!gl_has_highp())

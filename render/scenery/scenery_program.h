@@ -29,14 +29,16 @@ struct scenery_program {
 struct scenery_programs {
 	struct scenery_program *all; /* owned */
 	uint32_t count, room;
+	uint8_t cut; /* root_page.cut of all */
 };
 
-/* Returns the program with those features, bits of the above and of SURFACE_TOOLS; it is built
+/* Returns the program with those features, bits of the above and of SURFACE_TOOLS, for a release's
+ * root_page.cut; it is built
  * where it is missing. Borrowed until the next call. What the driver refuses is drawn without its
  * material, then without tools; NULL: it refuses that too, or memory is short. Substances and
  * relief need fragments with highp; without, they are left out. */
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
-						   unsigned features);
+						   unsigned features, uint8_t cut);
 void scenery_programs_finish(struct scenery_programs *programs); /* zeroed is fine */
 
 #endif

@@ -90,7 +90,10 @@ static void says_whether_there_is_a_stream_or_scenery(void **state)
 	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
 	CHECK(back.has_stream == 1 && back.has_scenery == 1 && back.has_solid == 1);
 	CHECK(root_page_plain(&back, 7) == 4 && root_page_scenery(&back, 7) == 5);
-	buffer.data[buffer.size - 1] = 8;
+	buffer.data[buffer.size - 1] = 8 * ROOT_CUT_MAX + 2; /* and what a section shows */
+	CHECK(root_page_decode(&back, buffer_bytes(&buffer)) == 0);
+	CHECK(back.cut == ROOT_CUT_MAX && back.has_scenery == 1 && back.has_stream == 0);
+	buffer.data[buffer.size - 1] = 8 * ROOT_CUT_MAX + 8; /* a substance that there is not */
 	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);
 	buffer.data[buffer.size - 1] = 0;
 	CHECK(decode(buffer_bytes(&buffer), NULL) == -EBADMSG);

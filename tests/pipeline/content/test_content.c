@@ -60,7 +60,7 @@ static void every_key_is_read(void **state)
 {
 	static const char ini[] =
 		"# a comment\n[model]\nname = Banteay of the Test\nscans = tower.ply, tower.ply\n"
-		"up = y\nunit = mm\nerror_mm = 2.5\ncolours = \"#102030\"\nlit = no ; really\nsun = 0 3 4\n"
+		"up = y\nunit = mm\nerror_mm = 2.5\ncolours = \"#102030\"\ncut = wood\nlit = no ; really\nsun = 0 3 4\n"
 		"background = #ffffff\n[view]\nstart = eye 1 2 3 target -4 5e-1 6\n"
 		"tools = section, measure light\n[grid]\n"
 		"points = 32\nface_px = 1024\nquality = 90\neffort = quick\n[samples]\nquality = features\n[hierarchy]\nkind = tree\nsimplify = features\n"
@@ -74,7 +74,7 @@ static void every_key_is_read(void **state)
 	CHECK(content_read(&content, folder, &diagnostics) == 0);
 	CHECK(strcmp(content.name, "Banteay of the Test") == 0 && content.scan_count == 2);
 	CHECK(content.import.up == IMPORT_Y_UP && content.import.metres_per_unit == 0.001);
-	CHECK(content.substance == SUBSTANCE_NONE);
+	CHECK(content.substance == SUBSTANCE_NONE && content.cut == SUBSTANCE_WOOD);
 	CHECK(content.colours == CONTENT_COLOURS_ONE && content.import.default_colour[2] == 0x30);
 	CHECK(content.lit == CONTENT_LIT_NO && content.sun[1] == 0.6f && content.sun[2] == 0.8f);
 	CHECK(content.background[0] == 255 && content.has_start);
@@ -126,6 +126,8 @@ static void faults_name_file_line_and_cure(void **state)
 		{ "twice", "[model]\nup = z\n\nup = y\n", "line 4: up is set in line 2 already" },
 		{ "not-a-line", "[model]\nscans tower.ply\n",
 		  "line 2: 'scans tower.ply' is neither" },
+		{ "cut", "[model]\ncut = granite\n",
+		  "line 2: cut must be marble, wood, sandstone, laterite or none" },
 		{ "up", "[model]\nup = w\n",
 		  "line 2: up must be z, y or x: the axis that points up in the scans, not 'w'" },
 		{ "unit", "[model]\nunit = yard\n", "metres in one unit" },

@@ -6,6 +6,7 @@
 
 #include "format/picture.h"
 #include "geometry/solid_space.h"
+#include "geometry/substance.h"
 #include "geometry/vec.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
@@ -177,6 +178,79 @@ static void what_is_cut_shows_as_section_and_what_was_hidden_as_itself(void **st
 		      shown, sky, wrong, off);
 	CHECK(cut > 1000 && sky > 10000 && shown > 10000);
 	CHECK(wrong < PIXELS / 100 && off < shown / 4);
+}
+
+/* The same section of laterite: where it was red, the substance where the ray meets the plane. */
+static void a_cut_shows_the_substance_that_the_content_names(void **state)
+{
+	static uint8_t red[4 * PIXELS];
+	const struct scene_tools none = { .section = { .on = false } };
+	struct scene_tools tools = cut_through_pillars();
+	double sum = 0;
+	uint32_t count = 0;
+	struct view view;
+	(void)state;
+
+	settle(&tools, "red");
+	memcpy(red, stage.seen, sizeof(red));
+	settle(&none, "whole");
+	stage.scene->root.cut = SUBSTANCE_LATERITE;
+	settle(&tools, "laterite");
+	view_from_camera(&view, &eye);
+	for (int i = 0; i < PIXELS; i++) {
+		float direction[3], place[3], truth[3], far_m;
+
+		/* exactly red is what lies all within the face, and not at its outline */
+		if (abs(red[4 * i] - 158) > 1 || abs(red[4 * i + 1] - 71) > 1)
+			continue;
+		camera_ray(&eye, (float)(i % WIDTH) + 0.5f, (float)(i / WIDTH) + 0.5f, direction);
+		far_m = (-4 - eye.eye_m[1]) / direction[1]; /* to y = -4 */
+		for (int k = 0; k < 3; k++)
+			place[k] = eye.eye_m[k] + far_m * direction[k];
+		substance_colour(truth, SUBSTANCE_LATERITE, place, far_m / view.focal_px);
+		for (int k = 0; k < 3; k++) {
+			const double d = 255 * (double)truth[k] - stage.seen[4 * i + k];
+
+			sum += d * d;
+		}
+		count++;
+	}
+	stage.scene->root.cut = SUBSTANCE_NONE;
+	print_message("%u pixels, %.1f dB\n", count, 10 * log10(255.0 * 255 * 3 * count / sum));
+	CHECK(count > PIXELS / 50 && 10 * log10(255.0 * 255 * 3 * count / sum) > 30);
+}
+
+/* With every set of tools and fog, within what every board has. */
+static void every_program_of_a_cut_substance_is_built(void **state)
+{
+	struct scene *scene = stage.scene;
+	struct root_page root;
+	struct view view;
+	(void)state;
+
+	settle(&(struct scene_tools){ .rake = { .on = false } }, "before");
+	root = scene->root;
+	root.cut = SUBSTANCE_MARBLE;
+	for (unsigned tools = 0; tools < SURFACE_TOOLS; tools++) {
+		struct surface_frame frame = {
+			.view = &view,
+			.root = &root,
+			.tiles = &scene->tiles,
+			.depth = &scene->depth,
+			.repository = &scene->repository,
+			.rake = { .on = tools & SURFACE_RAKE },
+			.fog = { .share = tools & SURFACE_FOG ? 1 : 0, .range_m = 9 },
+		};
+
+		view_from_camera(&view, &eye);
+		if (tools & SURFACE_CUT)
+			view.cut[1] = 1;
+		CHECK(surface_tools(&frame) == tools);
+		for (int p = 0; p < SURFACE_PROGRAMS; p++) {
+			surface_begin(&scene->surface, &frame, p);
+			CHECK(!scene->surface.lacks[tools]);
+		}
+	}
 }
 
 static void rays_go_through_what_is_cut_away(void **state)
@@ -370,6 +444,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		ON_A_STAGE(what_is_cut_shows_as_section_and_what_was_hidden_as_itself),
+		ON_A_STAGE(a_cut_shows_the_substance_that_the_content_names),
+		ON_A_STAGE(every_program_of_a_cut_substance_is_built),
 		ON_A_STAGE(rays_go_through_what_is_cut_away),
 		ON_A_STAGE(an_eye_stops_before_stone_but_not_before_what_is_cut_away),
 		ON_A_STAGE(a_damaged_octree_leaves_the_rays),
