@@ -84,7 +84,7 @@ for name in ("visits", "release", "outage"):
 back = float(open(f"{folder}/outage/back").read())
 after = [float(line.split()[1]) - back for line in open(f"{folder}/outage/access")]
 rows["outage"]["requests_in_second_after"] = [sum(s <= t < s + 1 for t in after) for s in range(30)]
-json.dump(rows, sys.stdout, indent=1)
+json.dump(rows, sys.stdout)
 print()
 P
 [ "$(python3 -c 'import json; r = json.load(open("build/bench/fleet.json")); print(sum(r[n]["failed"] for n in ("visits", "release", "outage")))')" = 0 ]
