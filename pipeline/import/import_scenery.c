@@ -93,6 +93,7 @@ static int add_vrml(struct scenery_maker *maker, struct scene_file *file, uint32
 		    const struct import_scene *which, struct diagnostics *diagnostics,
 		    struct diagnostics *warnings)
 {
+	const struct vrml_options options = { .open_file = open_file, .data = &file->files };
 	struct vrml *scene;
 	int rc;
 
@@ -103,7 +104,7 @@ static int add_vrml(struct scenery_maker *maker, struct scene_file *file, uint32
 			"remove \"scene\" and \"plays\" from scenes.json");
 	rc = read_vrml(&scene, file, diagnostics, warnings);
 	if (rc == 0)
-		rc = vrml_scenery_add(maker, scene, node, diagnostics, warnings);
+		rc = vrml_scenery_add(maker, scene, node, &options, diagnostics, warnings);
 	vrml_destroy(scene);
 	return rc;
 }

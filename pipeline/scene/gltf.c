@@ -11,6 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "pipeline/scene/scenery_image.h"
+
 enum {
 	GLB_HEAD_BYTES = 12,
 	CHUNK_HEAD_BYTES = 8,
@@ -60,7 +62,8 @@ static int list_all(struct gltf *gltf)
 		[GLTF_SCENES] = "scenes",         [GLTF_NODES] = "nodes",
 		[GLTF_MESHES] = "meshes",         [GLTF_MATERIALS] = "materials",
 		[GLTF_ACCESSORS] = "accessors",   [GLTF_VIEWS] = "bufferViews",
-		[GLTF_ANIMATIONS] = "animations",
+		[GLTF_ANIMATIONS] = "animations", [GLTF_TEXTURES] = "textures",
+		[GLTF_IMAGES] = "images",
 	};
 	int rc = 0;
 
@@ -249,7 +252,7 @@ int gltf_read(struct gltf *out, struct bytes file, const char *path,
 	struct buffer text;
 	int rc;
 
-	*out = (struct gltf){ .path = path, .diagnostics = diagnostics };
+	*out = (struct gltf){ .path = path, .diagnostics = diagnostics, .options = *options };
 	rc = split(out, file, &json, &bin);
 	if (rc < 0)
 		return rc;
@@ -370,6 +373,56 @@ int gltf_numbers_of(struct gltf_numbers *out, const struct gltf *gltf, const cJS
 				"accessor %u %s; export it anew without it", number, fault)
 		     : 0;
 }
+
+/* ---- pictures */
+
+/* Finds the bytes of a bufferView; none if it is not there. */
+static struct bytes view_bytes(const struct gltf *gltf, const cJSON *view)
+{
+	uint64_t buffer, offset = 0, length;
+
+	if (!view || !get_count(view, "buffer", GLTF_BUFFERS_MAX, &buffer) ||
+	    buffer >= gltf->buffer_count || !get_count(view, "byteLength", UINT32_MAX, &length) ||
+	    (cJSON_HasObjectItem(view, "byteOffset") &&
+	     !get_count(view, "byteOffset", UINT32_MAX, &offset)) ||
+	    offset + length > gltf->buffers[buffer].size)
+		return (struct bytes){ 0 };
+	return (struct bytes){ gltf->buffers[buffer].data + offset, length };
+}
+
+int gltf_picture(struct picture *out, const struct gltf *gltf, const cJSON *texture,
+		 struct diagnostics *warnings)
+{
+	const cJSON *image = gltf_item(gltf, GLTF_IMAGES, texture, "source", NULL);
+	const char *uri = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(image, "uri"));
+	const char *data = uri && strncmp(uri, "data:", 5) == 0 ? strstr(uri, ";base64,") : NULL;
+	const unsigned line = image ? json_text_line(&gltf->json, image) : 0;
+	char name[NAME_BYTES] = "of a texture";
+	struct buffer decoded;
+	int rc;
+
+	*out = (struct picture){ 0 };
+	if (data) {
+		buffer_init(&decoded, GLTF_BYTES_MAX);
+		rc = decode_base64(&decoded, data + strlen(";base64,"));
+		if (rc != -ENOMEM)
+			rc = scenery_image_decode(out, buffer_bytes(&decoded), name, gltf->path,
+						  line, warnings);
+		buffer_finish(&decoded);
+		return rc;
+	}
+	if (!uri)
+		return scenery_image_decode(
+			out,
+			view_bytes(gltf, gltf_item(gltf, GLTF_VIEWS, image, "bufferView", NULL)),
+			name, gltf->path, line, warnings);
+	if (!decode_name(name, uri))
+		return 0;
+	rc = gltf->options.open_file ? gltf->options.open_file(gltf->options.data, name) : -ENOENT;
+	return scenery_image_read(out, rc, name, gltf->path, line, warnings);
+}
+
+/* ---- numbers */
 
 /* Integers as they are stored. */
 static int64_t raw_integer(const struct gltf_numbers *numbers, const uint8_t *at)

@@ -9,6 +9,7 @@
 #include "base/bytes.h"
 #include "base/diagnostics.h"
 #include "base/json_text.h"
+#include "format/picture.h"
 
 struct cJSON;
 
@@ -27,6 +28,8 @@ enum gltf_list {
 	GLTF_ACCESSORS,
 	GLTF_VIEWS, /* bufferViews */
 	GLTF_ANIMATIONS,
+	GLTF_TEXTURES,
+	GLTF_IMAGES,
 	GLTF_LISTS
 };
 
@@ -40,6 +43,7 @@ struct gltf_options {
 struct gltf {
 	const char *path; /* borrowed; for messages */
 	struct diagnostics *diagnostics;
+	struct gltf_options options; /* to open pictures */
 	struct json_text json;
 	struct {
 		const struct cJSON **items; /* owned */
@@ -77,6 +81,11 @@ must_check int gltf_numbers_of(struct gltf_numbers *out, const struct gltf *gltf
 float gltf_number(const struct gltf_numbers *numbers, uint32_t element, uint32_t k);
 /* The same as an index. */
 uint32_t gltf_index(const struct gltf_numbers *numbers, uint32_t element);
+
+/* Reads the picture of a texture. Returns 1; 0, with a diagnostic in warnings: there is none that
+ * can be read; -ENOMEM. */
+must_check int gltf_picture(struct picture *out, const struct gltf *gltf,
+			    const struct cJSON *texture, struct diagnostics *warnings);
 
 /* Adds a diagnostic about an object of the document, with its line. Returns error. */
 int gltf_say(const struct gltf *gltf, int error, const struct cJSON *object, const char *text, ...)

@@ -22,7 +22,9 @@ struct walk {
 	uint32_t *nodes;        /* of the scenery */
 	uint32_t root;          /* of the scenery, that stands for the file */
 	uint32_t depth;
-	bool has_pictures, has_other_shapes;
+	bool has_other_shapes;
+	struct picture picture; /* of the texture that was used last, if it could be read */
+	const cJSON *picture_of;
 };
 
 static const char *name_of(const cJSON *object)
@@ -168,6 +170,8 @@ struct look {
 	struct scenery_material material;
 	bool has_mean; /* of a substance, in place of the factor */
 	uint8_t mean[3];
+	const cJSON *texture; /* NULL: none */
+	char coordinates[24]; /* "TEXCOORD_0" */
 };
 
 static uint8_t to_byte(float linear)
@@ -216,6 +220,8 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 	static const float white[4] = { 1, 1, 1, 1 }, black[3];
 	const cJSON *material = gltf_item(walk->gltf, GLTF_MATERIALS, primitive, "material", NULL);
 	const cJSON *pbr = cJSON_GetObjectItemCaseSensitive(material, "pbrMetallicRoughness");
+	const cJSON *picture = cJSON_GetObjectItemCaseSensitive(pbr, "baseColorTexture");
+	const cJSON *set = cJSON_GetObjectItemCaseSensitive(picture, "texCoord");
 	const char *alpha =
 		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(material, "alphaMode"));
 	float emissive[3];
@@ -233,13 +239,15 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 	if (alpha && strcmp(alpha, "BLEND") == 0)
 		out->material.opacity = fminf(fmaxf(out->factor[3], 0), 1);
 	get_gloss(walk, out, pbr, material);
-	walk->has_pictures |= cJSON_HasObjectItem(pbr, "baseColorTexture");
+	out->texture = gltf_item(walk->gltf, GLTF_TEXTURES, picture, "index", NULL);
+	snprintf(out->coordinates, sizeof(out->coordinates), "TEXCOORD_%d",
+		 cJSON_IsNumber(set) ? set->valueint : 0);
 	return 0;
 }
 
 struct shape {
-	struct gltf_numbers positions, colours, indices;
-	bool has_colours, has_indices, has_normals;
+	struct gltf_numbers positions, colours, indices, uvs;
+	bool has_uvs, has_colours, has_indices, has_normals;
 	struct look look;
 	int mode;
 	uint32_t count; /* of corners in order */
@@ -276,7 +284,12 @@ static int read_shape(struct walk *walk, struct shape *out, const cJSON *primiti
 		return rc;
 	out->has_normals = cJSON_HasObjectItem(attributes, "NORMAL");
 	out->count = out->has_indices ? out->indices.count : out->positions.count;
-	return get_look(walk, &out->look, primitive);
+	rc = get_look(walk, &out->look, primitive);
+	out->has_uvs = rc == 0 && out->look.texture &&
+		       cJSON_HasObjectItem(attributes, out->look.coordinates);
+	if (out->has_uvs)
+		rc = gltf_numbers_of(&out->uvs, gltf, attributes, out->look.coordinates, 2);
+	return rc;
 }
 
 static bool set_corner(struct soup_corner *out, const struct shape *shape, uint32_t at)
@@ -285,8 +298,13 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 
 	*out = (struct soup_corner){ 0 };
 	if (vertex >= shape->positions.count ||
-	    (shape->has_colours && vertex >= shape->colours.count))
+	    (shape->has_colours && vertex >= shape->colours.count) ||
+	    (shape->has_uvs && vertex >= shape->uvs.count))
 		return false;
+	if (shape->has_uvs) { /* v = 0 is the top of the picture */
+		out->uv[0] = gltf_number(&shape->uvs, vertex, 0);
+		out->uv[1] = 1 - gltf_number(&shape->uvs, vertex, 1);
+	}
 	for (int k = 0; k < 3; k++) {
 		const float colour =
 			shape->has_colours ? gltf_number(&shape->colours, vertex, (uint32_t)k) : 1;
@@ -319,12 +337,25 @@ static int add_triangles(struct soup *soup, const struct shape *shape)
 	return rc;
 }
 
+/* Reads the picture of a shape. Returns whether there is one, or -ENOMEM. */
+static int get_picture(struct walk *walk, const struct shape *shape)
+{
+	if (!shape->has_uvs)
+		return 0;
+	if (walk->picture_of == shape->look.texture)
+		return walk->picture.rgba != NULL;
+	picture_finish(&walk->picture);
+	walk->picture_of = shape->look.texture;
+	return gltf_picture(&walk->picture, walk->gltf, shape->look.texture, walk->warnings);
+}
+
 static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON *mesh,
 			 uint32_t node, const float place[16], bool is_mirrored)
 {
 	const float round = 1;
 	struct soup soup = { .texture = SOUP_NO_TEXTURE, .is_inside_out = is_mirrored };
 	struct shape shape;
+	int has_picture;
 	int rc = read_shape(walk, &shape, primitive);
 
 	if (rc < 0)
@@ -336,7 +367,8 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 	if (shape.look.material.opacity < 1.0f / 255)
 		return 0; /* it is not seen */
 	memcpy(soup.place, place, sizeof(soup.place));
-	rc = add_triangles(&soup, &shape);
+	has_picture = get_picture(walk, &shape);
+	rc = has_picture < 0 ? has_picture : add_triangles(&soup, &shape);
 	if (rc == -EBADMSG)
 		gltf_say(walk->gltf, rc, primitive,
 			 "mesh \"%.60s\" has indices or places that are none; export it anew",
@@ -344,7 +376,8 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
 	if (rc == 0)
 		rc = scenery_add_surface(walk->maker, node, &shape.look.material, soup.triangles,
-					 soup.count, shape.has_normals ? round : 0);
+					 soup.count, shape.has_normals ? round : 0,
+					 has_picture ? &walk->picture : NULL);
 	soup_finish(&soup);
 	return fail(walk, rc, mesh);
 }
@@ -502,10 +535,6 @@ static void warn(const struct walk *walk)
 {
 	const char *path = walk->gltf->path;
 
-	if (walk->has_pictures)
-		diagnostics_add(walk->warnings, 0, path, 0,
-				"pictures on surfaces are left out: scenery has one colour a "
-				"corner");
 	if (walk->has_other_shapes)
 		diagnostics_add(walk->warnings, 0, path, 0,
 				"points and lines have no surface; they were left out");
@@ -532,6 +561,7 @@ int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint3
 		rc = add_scene(&walk, scene, node, choice);
 	if (rc == 0)
 		warn(&walk);
+	picture_finish(&walk.picture);
 	free(walk.moves);
 	free(walk.was_seen);
 	free(walk.nodes);

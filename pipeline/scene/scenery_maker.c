@@ -83,25 +83,52 @@ static int find_sheet(struct scenery_maker *maker, uint32_t node, uint32_t mater
 	return 0;
 }
 
+/* Returns how many triangles a surface with a picture may have. What is transparent is sorted in
+ * each frame, so it is not divided. */
+static uint32_t most_painted(const struct scenery_maker *maker,
+			     const struct scenery_material *material)
+{
+	const uint32_t left = SCENERY_PAINT_MAX - maker->paint_count;
+
+	if (material->opacity < 1)
+		return 0;
+	return left / 2 < SCENERY_PAINT_SURFACE_MAX ? left / 2 : SCENERY_PAINT_SURFACE_MAX;
+}
+
 int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 			const struct scenery_material *material,
-			const struct soup_triangle *triangles, uint32_t count, float crease_rad)
+			const struct soup_triangle *triangles, uint32_t count, float crease_rad,
+			const struct picture *picture)
 {
+	struct scenery_paint paint = { .pieces = 1 };
 	struct scenery_sheet *sheet = NULL;
-	uint32_t number;
-	int rc;
+	uint32_t number, divided;
+	int rc = 0;
 
 	if (count == 0)
 		return 0;
-	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
-	    (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
-		return -EFBIG;
-	maker->clear_count += material->opacity < 1 ? count : 0;
-	maker->triangle_count += count;
-	rc = find_material(maker, material, &number);
+	if (picture)
+		rc = scenery_paint_init(&paint, picture, triangles, count,
+					most_painted(maker, material));
+	divided = count * paint.pieces * paint.pieces;
+	if (rc == 0 &&
+	    (divided > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
+	     (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count)))
+		rc = -EFBIG;
+	if (rc == 0)
+		rc = find_material(maker, material, &number);
 	if (rc == 0)
 		rc = find_sheet(maker, node, number, &sheet);
-	return rc < 0 ? rc : scenery_sheet_add(sheet, triangles, count, crease_rad);
+	if (rc == 0)
+		rc = scenery_sheet_add(sheet, triangles, count, crease_rad,
+				       picture ? &paint : NULL);
+	if (rc == 0) {
+		maker->clear_count += material->opacity < 1 ? count : 0;
+		maker->triangle_count += divided;
+		maker->paint_count += divided - count;
+	}
+	scenery_paint_finish(&paint);
+	return rc;
 }
 
 int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,

@@ -3,12 +3,18 @@
 #ifndef GOPURA_PIPELINE_SCENE_SCENERY_MAKER_H
 #define GOPURA_PIPELINE_SCENE_SCENERY_MAKER_H
 
+#include "format/picture.h"
 #include "format/scenery.h"
 #include "geometry/substance.h"
 #include "pipeline/scene/soup.h"
 
 /* The triangles of a node that become meshes. */
 struct scenery_sheet;
+
+enum {
+	SCENERY_PAINT_MAX = 1 << 17,         /* triangles that all pictures add */
+	SCENERY_PAINT_SURFACE_MAX = 1 << 16, /* of a surface with a picture, unless it had more */
+};
 
 /* What the content adds to the materials of a file that are called so. */
 struct scenery_look {
@@ -22,7 +28,7 @@ struct scenery_look {
 struct scenery_maker {
 	struct scenery out; /* its meshes are made at the end */
 	uint32_t node_room, motion_room, touch_room, track_room, number_room, mesh_room;
-	uint32_t material_room, clear_count;
+	uint32_t material_room, clear_count, paint_count;
 	struct scenery_sheet *sheets; /* owned */
 	uint32_t sheet_count, sheet_room, triangle_count;
 	struct scenery_look *looks; /* borrowed; of the file that is being read */
@@ -42,11 +48,12 @@ void scenery_turn(float out[4], const float axis[3], float angle_rad);
 must_check int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node,
 				uint32_t *number);
 /* Adds triangles in the node's metres. Equal materials are kept once. Edges where faces meet at
- * more than crease_rad stay sharp; across others light is smooth. */
+ * more than crease_rad stay sharp; across others light is smooth. picture: on the triangles, by
+ * their uv, or NULL; they are divided for it, within the limits above. */
 must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,
-				   float crease_rad);
+				   float crease_rad, const struct picture *picture);
 /* Tracks follow that are added after it. */
 must_check int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
 				  uint32_t *number);

@@ -102,8 +102,76 @@ static bool has_area(const struct scenery_corner corners[3])
 	return vec_dot(normal, normal) > 0;
 }
 
+/* The corner of a triangle at a place between its corners; the shares of these have the sum 1. */
+static struct scenery_corner between(const struct scenery_corner corners[3], const float shares[3],
+				     const struct scenery_paint *paint)
+{
+	struct scenery_corner out = { 0 };
+	float rgb[3] = { 0.5f, 0.5f, 0.5f };
+
+	for (int i = 0; i < 3; i++) {
+		vec_add_scaled(out.position, out.position, shares[i], corners[i].position);
+		vec_add_scaled(out.normal, out.normal, shares[i], corners[i].normal);
+		for (int k = 0; k < 2; k++)
+			out.uv[k] += shares[i] * corners[i].uv[k];
+		for (int k = 0; k < 3; k++)
+			rgb[k] += shares[i] * (float)corners[i].rgb[k];
+	}
+	vec_normalise(out.normal);
+	for (int k = 0; k < 3; k++)
+		out.rgb[k] = (uint8_t)vec_least(rgb[k], 255);
+	scenery_paint_colour(paint, out.uv, out.rgb);
+	return out;
+}
+
+static int divide(struct scenery_sheet *sheet, const struct scenery_corner corners[3],
+		  const struct scenery_paint *paint)
+{
+	const uint32_t n = paint->pieces;
+	int rc = ARRAY_RESERVE(sheet->triangles, sheet->room,
+			       (uint64_t)sheet->count + (uint64_t)n * n, SCENERY_ALL_TRIANGLES_MAX);
+
+	/* Rows from the first corner on; in each, triangles that point towards it and away. */
+	for (uint32_t row = 0; row < n && rc == 0; row++)
+		for (uint32_t i = 0; i < 2 * row + 1; i++) {
+			const uint32_t at = i / 2;
+			const uint32_t places[2][3][2] = {
+				{ { row, at }, { row + 1, at }, { row + 1, at + 1 } },
+				{ { row, at }, { row + 1, at + 1 }, { row, at + 1 } }
+			};
+			struct scenery_corner *to = sheet->triangles[sheet->count++];
+
+			for (int k = 0; k < 3; k++) {
+				const uint32_t *place = places[i % 2][k];
+				const float shares[3] = { (float)(n - place[0]) / (float)n,
+							  (float)(place[0] - place[1]) / (float)n,
+							  (float)place[1] / (float)n };
+
+				to[k] = between(corners, shares, paint);
+			}
+		}
+	return rc;
+}
+
+/* Divides the last triangles of the sheet, from `first` on. */
+static int divide_all(struct scenery_sheet *sheet, uint32_t first,
+		      const struct scenery_paint *paint)
+{
+	const uint32_t count = sheet->count - first;
+	struct scenery_corner(*whole)[3] = malloc(((size_t)count + 1) * sizeof(*whole));
+	int rc = whole ? 0 : -ENOMEM;
+
+	if (whole && count > 0)
+		memcpy(whole, sheet->triangles[first], count * sizeof(*whole));
+	sheet->count = first;
+	for (uint32_t i = 0; i < count && rc == 0; i++)
+		rc = divide(sheet, whole[i], paint);
+	free(whole);
+	return rc;
+}
+
 int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
-		      uint32_t count, float crease_rad)
+		      uint32_t count, float crease_rad, const struct scenery_paint *paint)
 {
 	uint32_t before = sheet->count;
 	int rc = ARRAY_RESERVE(sheet->triangles, sheet->room, (uint64_t)sheet->count + count,
@@ -116,13 +184,14 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 			const struct soup_corner *from = &triangles[i].corners[k];
 
 			memcpy(to[k].position, from->position, sizeof(to[k].position));
+			memcpy(to[k].uv, from->uv, sizeof(to[k].uv));
 			memcpy(to[k].rgb, from->rgb, sizeof(to[k].rgb));
 		}
 		sheet->count += has_area(to);
 	}
 	if (rc == 0 && sheet->count > before)
 		rc = smooth(&sheet->triangles[before], sheet->count - before, crease_rad);
-	return rc;
+	return rc == 0 && paint ? divide_all(sheet, before, paint) : rc;
 }
 
 /* ---- meshes */

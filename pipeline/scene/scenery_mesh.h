@@ -3,10 +3,11 @@
 #define GOPURA_PIPELINE_SCENE_SCENERY_MESH_H
 
 #include "format/scenery.h"
+#include "pipeline/scene/scenery_paint.h"
 #include "pipeline/scene/soup.h"
 
 struct scenery_corner {
-	float position[3], normal[3];
+	float position[3], normal[3], uv[2];
 	uint8_t rgb[3];
 };
 
@@ -17,9 +18,11 @@ struct scenery_sheet {
 };
 
 /* Adds triangles, with normals that are smooth where faces meet at no more than crease_rad.
- * Triangles without an area are left out. -EFBIG, -ENOMEM. */
+ * Triangles without an area are left out. paint: a picture on them, by which they are divided, or
+ * NULL. -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
-				 uint32_t count, float crease_rad);
+				 uint32_t count, float crease_rad,
+				 const struct scenery_paint *paint);
 /* Appends the sheet's meshes to out->meshes, as many as its vertices need; all have one lattice.
  * -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,

@@ -69,6 +69,21 @@ void vrml_transform(float out[16], const float parent[16], const struct vrml_nod
 	shift(out, center, -1);
 }
 
+/* -C S R C T, as 6.49 has it. */
+void vrml_transform_uv(float uv[2], const struct vrml_node *node)
+{
+	float move[2], center[2], size[2], x, y;
+	float angle = vrml_get_float(node, "rotation", 0);
+
+	vrml_get_floats(move, node, "translation", 2, (const float[2]){ 0 });
+	vrml_get_floats(center, node, "center", 2, (const float[2]){ 0 });
+	vrml_get_floats(size, node, "scale", 2, (const float[2]){ 1, 1 });
+	x = uv[0] + move[0] + center[0];
+	y = uv[1] + move[1] + center[1];
+	uv[0] = size[0] * (cosf(angle) * x - sinf(angle) * y) - center[0];
+	uv[1] = size[1] * (sinf(angle) * x + cosf(angle) * y) - center[1];
+}
+
 bool vrml_mirrors(const float m[16])
 {
 	float cross[3];

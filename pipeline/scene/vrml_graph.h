@@ -13,6 +13,8 @@ extern const float vrml_identity[16];
 
 /* Sets out to the place of what is below a Transform whose own place is `parent`. Column-major. */
 void vrml_transform(float out[16], const float parent[16], const struct vrml_node *node);
+/* Moves a place of a picture as a TextureTransform says. */
+void vrml_transform_uv(float uv[2], const struct vrml_node *node);
 /* Returns whether a place turns left into right. */
 bool vrml_mirrors(const float place[16]);
 

@@ -7,6 +7,7 @@
 
 #include "base/map.h"
 #include "geometry/vec.h"
+#include "pipeline/scene/scenery_image.h"
 #include "pipeline/scene/scenery_look.h"
 #include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_graph.h"
@@ -23,7 +24,9 @@ struct walk {
 	struct diagnostics *diagnostics, *warnings;
 	uint32_t root; /* node of the scenery that stands for the file */
 	uint32_t visits, depth;
-	bool has_pictures;
+	const struct vrml_options *options;
+	struct picture picture; /* of the texture that was used last, if it could be read */
+	const struct vrml_node *picture_of;
 };
 
 static map_key key_of(const struct vrml_node *node)
@@ -225,6 +228,66 @@ static bool is_visible(const struct scenery_material *material)
 	return material->opacity >= 1.0f / 255;
 }
 
+/* ---- pictures */
+
+/* Reads the picture of an Appearance: the first that ImageTexture's url names. Returns whether
+ * there is one, or -ENOMEM. */
+static int get_picture(struct walk *walk, const struct vrml_node *look)
+{
+	const struct vrml_node *texture = look ? vrml_get_node(look, "texture") : NULL;
+	const struct vrml_value *urls;
+	int fd;
+
+	if (!texture)
+		return 0;
+	if (walk->picture_of == texture)
+		return walk->picture.rgba != NULL;
+	picture_finish(&walk->picture);
+	walk->picture_of = texture;
+	if (!vrml_is(texture, "ImageTexture")) {
+		diagnostics_add(walk->warnings, 0, texture->file, texture->line,
+				"%s is left out: scenery shows pictures of ImageTexture",
+				texture->type->name);
+		return 0;
+	}
+	urls = vrml_get(texture, "url");
+	if (!urls || urls->count == 0)
+		return 0;
+	fd = walk->options->open_file
+		     ? walk->options->open_file(walk->options->data, urls->strings[0])
+		     : -ENOENT;
+	return scenery_image_read(&walk->picture, fd, urls->strings[0], texture->file,
+				  texture->line, walk->warnings);
+}
+
+static bool is_grey(const struct picture *picture)
+{
+	const size_t count = (size_t)picture->width * picture->height;
+
+	for (size_t i = 0; i < count; i++)
+		if (picture->rgba[4 * i] != picture->rgba[4 * i + 1] ||
+		    picture->rgba[4 * i] != picture->rgba[4 * i + 2])
+			return false;
+	return true;
+}
+
+/* A picture takes the place of all other colours, unless it is grey (6.22). */
+static void prepare(const struct picture *picture, struct soup *soup, const struct vrml_node *look)
+{
+	const struct vrml_node *uvs = vrml_node_of(look, "textureTransform", "TextureTransform");
+	const bool is_coloured = !is_grey(picture);
+
+	for (uint32_t i = 0; i < soup->count; i++)
+		for (int k = 0; k < 3; k++) {
+			struct soup_corner *corner = &soup->triangles[i].corners[k];
+
+			if (is_coloured)
+				memset(corner->rgb, 255, sizeof(corner->rgb));
+			if (uvs)
+				vrml_transform_uv(corner->uv, uvs);
+		}
+}
+
 static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_t node,
 		       const float place[16], bool is_mirrored)
 {
@@ -234,7 +297,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	struct soup soup = { .texture = SOUP_NO_TEXTURE };
 	struct scenery_material kept;
 	uint8_t rgb[3];
-	int rc;
+	int rc, has_picture;
 
 	if (!geometry)
 		return 0;
@@ -244,7 +307,9 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 		kept.opacity = 1; /* its node's */
 	if (!is_visible(&kept))
 		return 0;
-	walk->has_pictures |= look && vrml_get_node(look, "texture");
+	has_picture = get_picture(walk, look);
+	if (has_picture < 0)
+		return fail(walk, has_picture, shape);
 	memcpy(soup.place, place, sizeof(soup.place));
 	rc = vrml_shape_add(&soup, geometry, rgb, is_mirrored, walk->diagnostics);
 	if (rc == 0)
@@ -252,8 +317,10 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 				"%s is no geometry; it was left out", geometry->type->name);
 	if (rc > 0) {
 		scenery_look_grain(&kept, &soup, &walk->maker->out.nodes[walk->root].place);
+		if (has_picture)
+			prepare(&walk->picture, &soup, look);
 		rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles, soup.count,
-					 crease_of(geometry));
+					 crease_of(geometry), has_picture ? &walk->picture : NULL);
 		if (rc < 0)
 			rc = fail(walk, rc, geometry);
 	}
@@ -370,20 +437,20 @@ static int add_all(struct walk *walk, const struct vrml *scene, uint32_t node)
 }
 
 int vrml_scenery_add(struct scenery_maker *maker, const struct vrml *scene, uint32_t node,
-		     struct diagnostics *diagnostics, struct diagnostics *warnings)
+		     const struct vrml_options *options, struct diagnostics *diagnostics,
+		     struct diagnostics *warnings)
 {
-	struct walk walk = {
-		.maker = maker, .root = node, .diagnostics = diagnostics, .warnings = warnings
-	};
+	struct walk walk = { .options = options,
+			     .maker = maker,
+			     .root = node,
+			     .diagnostics = diagnostics,
+			     .warnings = warnings };
 	const uint32_t errors = diagnostics ? diagnostics->error_count : 0;
 	int rc = add_all(&walk, scene, node);
 
 	if (rc < 0 && scene->root_count > 0 && diagnostics && diagnostics->error_count == errors)
 		fail(&walk, rc, scene->roots[0]);
-	if (rc == 0 && walk.has_pictures)
-		diagnostics_add(
-			warnings, 0, scene->roots[0]->file, 0,
-			"pictures on surfaces are left out: scenery has one colour a corner");
+	picture_finish(&walk.picture);
 	vrml_instances_finish(&walk.instances);
 	map_finish(&walk.moving);
 	return rc;

@@ -7,12 +7,12 @@
 #include "pipeline/scene/scenery_maker.h"
 #include "pipeline/scene/vrml.h"
 
-/* Adds the scene below a node. What is left out is a diagnostic in warnings, with file and line.
- * Returns a negative errno with a diagnostic: -EBADMSG: a shape or an interpolator is not valid;
- * -EFBIG: past a limit of format/scenery.h; -ENOMEM. The maker is then only good for
- * scenery_maker_finish. */
+/* Adds the scene below a node; options open its pictures. What is left out is a diagnostic in
+ * warnings, with file and line. Returns a negative errno with a diagnostic: -EBADMSG: a shape or an
+ * interpolator is not valid; -EFBIG: past a limit of format/scenery.h; -ENOMEM. The maker is then
+ * only good for scenery_maker_finish. */
 must_check int vrml_scenery_add(struct scenery_maker *maker, const struct vrml *scene,
-				uint32_t node, struct diagnostics *diagnostics,
-				struct diagnostics *warnings);
+				uint32_t node, const struct vrml_options *options,
+				struct diagnostics *diagnostics, struct diagnostics *warnings);
 
 #endif

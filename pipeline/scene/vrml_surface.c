@@ -19,21 +19,6 @@ struct walk {
 
 /* ---- shapes */
 
-/* -C S R C T, as 6.49 has it. */
-static void transform_uv(float uv[2], const struct vrml_node *node)
-{
-	float move[2], center[2], size[2], x, y;
-	float angle = vrml_get_float(node, "rotation", 0);
-
-	vrml_get_floats(move, node, "translation", 2, (const float[2]){ 0 });
-	vrml_get_floats(center, node, "center", 2, (const float[2]){ 0 });
-	vrml_get_floats(size, node, "scale", 2, (const float[2]){ 1, 1 });
-	x = uv[0] + move[0] + center[0];
-	y = uv[1] + move[1] + center[1];
-	uv[0] = size[0] * (cosf(angle) * x - sinf(angle) * y) - center[0];
-	uv[1] = size[1] * (sinf(angle) * x + cosf(angle) * y) - center[1];
-}
-
 /* Finds or adds a picture. */
 static int texture_number(struct vrml_surface *out, const struct vrml_node *texture)
 {
@@ -79,7 +64,7 @@ static int add_shape(struct walk *walk, const struct vrml_node *shape, const flo
 	rc = vrml_shape_add(&out->soup, geometry, rgb, vrml_mirrors(place), walk->diagnostics);
 	for (uint32_t i = before; uvs && i < out->soup.count; i++)
 		for (int k = 0; k < 3; k++)
-			transform_uv(out->soup.triangles[i].corners[k].uv, uvs);
+			vrml_transform_uv(out->soup.triangles[i].corners[k].uv, uvs);
 	out->left_out += rc == 0;
 	out->has_colours |= material || (vrml_field_named(geometry->type, "color", 5) >= 0 &&
 					 vrml_get_node(geometry, "color"));

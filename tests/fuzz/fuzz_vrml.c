@@ -25,8 +25,8 @@ static void check(const struct vrml_surface *surface)
 	}
 }
 
-static int make_scenery(const struct vrml *scene, struct diagnostics *diagnostics,
-			struct diagnostics *warnings)
+static int make_scenery(const struct vrml *scene, const struct vrml_options *options,
+			struct diagnostics *diagnostics, struct diagnostics *warnings)
 {
 	const struct scenery_node root = { .parent = SCENERY_NONE,
 					   .layer = SCENERY_NONE,
@@ -37,7 +37,7 @@ static int make_scenery(const struct vrml *scene, struct diagnostics *diagnostic
 	int rc = scenery_add_node(&maker, &root, &node);
 
 	if (rc == 0)
-		rc = vrml_scenery_add(&maker, scene, node, diagnostics, warnings);
+		rc = vrml_scenery_add(&maker, scene, node, options, diagnostics, warnings);
 	if (rc == 0 && scenery_maker_end(&maker, &made) == 0)
 		(void)scenery_is_sane(&made); /* numbers may be too large */
 	scenery_maker_finish(&maker);
@@ -79,7 +79,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 		if (rc == 0) {
 			check(&surface);
 			vrml_surface_finish(&surface);
-			rc = make_scenery(scene, &diagnostics, &warnings);
+			rc = make_scenery(scene, &options, &diagnostics, &warnings);
 		}
 	}
 	if (rc < 0 && !strstr(diagnostics.first.text, ".wrl"))

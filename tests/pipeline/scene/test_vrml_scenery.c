@@ -40,7 +40,7 @@ static int make_with(struct scenery *out, const char *text, struct scenery_look 
 	*out = (struct scenery){ 0 };
 	CHECK(scenery_add_node(&maker, &root, &node) == 0);
 	if (rc == 0)
-		rc = vrml_scenery_add(&maker, scene, node, diagnostics, warnings);
+		rc = vrml_scenery_add(&maker, scene, node, &options, diagnostics, warnings);
 	if (rc == 0)
 		CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
 	scenery_maker_finish(&maker);

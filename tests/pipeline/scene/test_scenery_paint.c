@@ -1,0 +1,297 @@
+/* Pictures on surfaces of scenery: as colours of corners, within a budget, or a warning. */
+#include <errno.h>
+#include <fcntl.h>
+#include <sodium.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "pipeline/scene/gltf_scenery.h"
+#include "pipeline/scene/vrml_scenery.h"
+#include "tests/check.h"
+
+enum { SIDE = 64 };
+
+static const struct scenery_node root = {
+	.parent = SCENERY_NONE,
+	.layer = SCENERY_NONE,
+	.place = { .turn = { 0, 0, 0, 1 }, .scale = { 1, 1, 1 }, .stretch = { 0, 0, 0, 1 } }
+};
+
+/* Its upper half is red; the lower one is green on the left and blue on the right. */
+static struct picture make_picture(void)
+{
+	struct picture picture = { SIDE, SIDE, calloc(SIDE * SIDE, 4) };
+
+	for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+		const uint32_t x = i % SIDE, y = i / SIDE;
+
+		picture.rgba[4 * i + (y < SIDE / 2 ? 0 : x < SIDE / 2 ? 1 : 2)] = 255;
+		picture.rgba[4 * i + 3] = 255;
+	}
+	return picture;
+}
+
+static struct buffer make_png(void)
+{
+	struct picture picture = make_picture();
+	struct buffer png;
+
+	buffer_init(&png, 1 << 20);
+	CHECK(picture_encode_png(&png, &picture) == 0);
+	picture_finish(&picture);
+	return png;
+}
+
+/* A square of a metre with the whole picture on it. */
+static void make_square(struct soup_triangle out[2])
+{
+	static const float uvs[2][3][2] = { { { 0, 0 }, { 1, 0 }, { 1, 1 } },
+					    { { 0, 0 }, { 1, 1 }, { 0, 1 } } };
+
+	memset(out, 0, 2 * sizeof(*out));
+	for (int t = 0; t < 2; t++)
+		for (int k = 0; k < 3; k++) {
+			struct soup_corner *corner = &out[t].corners[k];
+
+			memcpy(corner->uv, uvs[t][k], sizeof(corner->uv));
+			memcpy(corner->position, uvs[t][k], sizeof(corner->uv));
+			memset(corner->rgb, 255, 3);
+		}
+}
+
+/* The colour of the corner that is nearest to a place, of all meshes. */
+static const uint8_t *colour_at(const struct scenery *s, float x, float y)
+{
+	const uint8_t *found = NULL;
+	float nearest = 1e9f;
+
+	for (uint32_t m = 0; m < s->mesh_count; m++)
+		for (uint32_t v = 0; v < s->meshes[m].vertex_count; v++) {
+			const struct scenery_mesh *mesh = &s->meshes[m];
+			const float dx = mesh->origin_m[0] - x +
+					 mesh->step_m * (float)mesh->vertices[v].place[0];
+			const float dy = mesh->origin_m[1] - y +
+					 mesh->step_m * (float)mesh->vertices[v].place[1];
+
+			if (dx * dx + dy * dy < nearest) {
+				nearest = dx * dx + dy * dy;
+				found = mesh->vertices[v].rgb;
+			}
+		}
+	return found;
+}
+
+static bool is_colour(const uint8_t *rgb, int strongest)
+{
+	for (int k = 0; k < 3; k++)
+		if (k == strongest ? rgb[k] < 250 : rgb[k] > 5)
+			return false;
+	return true;
+}
+
+static bool shows_the_picture(const struct scenery *s)
+{
+	return is_colour(colour_at(s, 0.2f, 0.8f), 0) && is_colour(colour_at(s, 0.8f, 0.8f), 0) &&
+	       is_colour(colour_at(s, 0.2f, 0.2f), 1) && is_colour(colour_at(s, 0.8f, 0.2f), 2);
+}
+
+static void a_square_is_divided_until_its_picture_shows(void **state)
+{
+	struct picture picture = make_picture();
+	struct scenery_maker maker = { 0 };
+	struct soup_triangle square[2];
+	struct scenery s;
+	uint32_t node;
+
+	(void)state;
+	make_square(square);
+	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
+	CHECK(scenery_maker_end(&maker, &s) == 0 && scenery_is_sane(&s));
+	/* Its diagonal has 90 pixels, and pieces of less than 1.5 show nothing more. */
+	CHECK(scenery_triangles(&s) == 2 * 60 * 60);
+	CHECK(shows_the_picture(&s));
+	/* It is still one flat square: neighbours share corners, all with one normal. */
+	CHECK(s.meshes[0].vertex_count == 61 * 61);
+	for (uint32_t v = 1; v < s.meshes[0].vertex_count; v++)
+		CHECK(memcmp(s.meshes[0].vertices[v].normal, s.meshes[0].vertices[0].normal, 2) ==
+		      0);
+	scenery_finish(&s);
+	picture_finish(&picture);
+}
+
+static void all_pictures_stay_within_their_budget(void **state)
+{
+	struct picture picture = { 4096, 1, calloc(4096, 4) };
+	struct scenery_material glass = scenery_plain;
+	struct scenery_maker maker = { 0 };
+	struct soup_triangle square[2];
+	uint32_t node;
+
+	(void)state;
+	glass.opacity = 0.5f;
+	make_square(square);
+	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
+	CHECK(maker.triangle_count > SCENERY_PAINT_SURFACE_MAX / 2 &&
+	      maker.triangle_count <= SCENERY_PAINT_SURFACE_MAX);
+	for (int i = 0; i < 100; i++)
+		CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) ==
+		      0);
+	CHECK(maker.triangle_count <= SCENERY_PAINT_MAX + 2 * 101);
+	/* What is transparent is sorted in each frame, and is not divided. */
+	CHECK(scenery_add_surface(&maker, node, &glass, square, 2, 0, &picture) == 0);
+	CHECK(maker.clear_count == 2);
+	scenery_maker_finish(&maker);
+	picture_finish(&picture);
+}
+
+/* Gives the PNG in data, by a name. */
+static int open_picture(void *data, const char *name)
+{
+	const struct buffer *png = data;
+	int fd;
+
+	if (strcmp(name, "a b.png") != 0)
+		return -ENOENT;
+	fd = memfd_create("picture", MFD_CLOEXEC);
+	CHECK(fd >= 0 && write(fd, png->data, png->size) == (ssize_t)png->size);
+	CHECK(lseek(fd, 0, SEEK_SET) == 0);
+	return fd;
+}
+
+static void make_vrml(struct scenery *out, const char *text, struct diagnostics *warnings)
+{
+	struct buffer png = make_png();
+	const struct vrml_options options = { .open_file = open_picture, .data = &png };
+	struct diagnostics diagnostics = { 0 };
+	struct scenery_maker maker = { 0 };
+	struct vrml *scene;
+	uint32_t node;
+
+	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	CHECK(vrml_read(&scene, (struct bytes){ (const uint8_t *)text, strlen(text) }, "a.wrl",
+			&options, &diagnostics, warnings) == 0);
+	CHECK(vrml_scenery_add(&maker, scene, node, &options, &diagnostics, warnings) == 0);
+	CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
+	vrml_destroy(scene);
+	buffer_finish(&png);
+}
+
+#define SQUARE(texture)                                                                            \
+	"#VRML V2.0 utf8\nShape { appearance Appearance { material Material {\n"                   \
+	"  diffuseColor 0.2 0.2 0.2 }\n  texture " texture " }\n"                                  \
+	"  geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n"  \
+	"    coordIndex [ 0 1 2 3 ]\n"                                                             \
+	"    texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] } } }"
+
+static void an_image_texture_takes_the_place_of_the_colour(void **state)
+{
+	struct diagnostics warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	make_vrml(&s, SQUARE("ImageTexture { url \"a b.png\" }"), &warnings);
+	CHECK(warnings.count == 0 && shows_the_picture(&s));
+	scenery_finish(&s);
+}
+
+static void a_picture_that_cannot_be_read_is_a_warning(void **state)
+{
+	static const char *const cases[][2] = {
+		{ SQUARE("ImageTexture { url \"none.png\" }"),
+		  "a.wrl:4: the picture none.png is left out: it is not there; put it beside" },
+		{ SQUARE("PixelTexture { image 1 1 1 0xFF }"), "a.wrl:4: PixelTexture is left" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < 2; i++) {
+		struct diagnostics warnings = { 0 };
+		struct scenery s;
+
+		make_vrml(&s, cases[i][0], &warnings);
+		if (!strstr(warnings.first.text, cases[i][1]))
+			fail_msg("case %zu: %s", i, warnings.first.text);
+		CHECK(scenery_triangles(&s) == 2 && colour_at(&s, 0, 0)[0] == 51);
+		scenery_finish(&s);
+	}
+}
+
+/* The same square in glTF, whose v counts from the top. */
+static void a_base_colour_texture_is_shown(void **state)
+{
+	static const float numbers[] = {
+		0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 1, 0, 0, 1, 0
+	};
+	static const char rest[] =
+		"\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 80}],\n"
+		"\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, "
+		"\"type\": \"VEC3\"}, {\"bufferView\": 0, \"byteOffset\": 48, \"componentType\": "
+		"5126, \"count\": 4, \"type\": \"VEC2\"}],\n"
+		"\"meshes\": [{\"primitives\": [{\"mode\": 5, \"material\": 0, \"attributes\": "
+		"{\"POSITION\": 0, \"TEXCOORD_1\": 1}}]}], \"nodes\": [{\"mesh\": 0}],\n"
+		"\"textures\": [{\"source\": 0}], \"scenes\": [{\"nodes\": [0]}],\n"
+		"\"materials\": [{\"pbrMetallicRoughness\": {\"baseColorTexture\": "
+		"{\"index\": 0, \"texCoord\": 1}}}]}";
+	static const char *const images[] = { "{\"uri\": \"a%20b.png\"}",
+					      "{\"uri\": \"data:image/png;base64,%s\"}",
+					      "{\"uri\": \"none.png\"}", "{\"bufferView\": 0}" };
+	struct buffer png = make_png();
+	const struct gltf_options options = { .open_file = open_picture, .data = &png };
+	char *base64 = malloc(2 * png.size + 8), places[200];
+
+	(void)state;
+	sodium_bin2base64(base64, 2 * png.size + 8, png.data, png.size,
+			  sodium_base64_VARIANT_ORIGINAL);
+	sodium_bin2base64(places, sizeof(places), (const uint8_t *)numbers, sizeof(numbers),
+			  sodium_base64_VARIANT_ORIGINAL);
+	for (size_t i = 0; i < 4; i++) {
+		const char *cut = strstr(images[i], "%s");
+		const int before = (int)(cut ? cut - images[i] : (long)strlen(images[i]));
+		struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+		const struct gltf_choice choice = { 0 };
+		struct scenery_maker maker = { 0 };
+		static char text[1 << 16];
+		struct scenery s;
+		struct gltf gltf;
+		uint32_t node;
+
+		CHECK(snprintf(text, sizeof(text),
+			       "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": "
+			       "\"data:;base64,%s\"}],\n\"images\": [%.*s%s%s],\n%s",
+			       places, before, images[i], cut ? base64 : "", cut ? cut + 2 : "",
+			       rest) < (int)sizeof(text));
+		CHECK(scenery_add_node(&maker, &root, &node) == 0);
+		if (gltf_read(&gltf, (struct bytes){ (const uint8_t *)text, strlen(text) },
+			      "a.gltf", &options, &diagnostics) != 0)
+			fail_msg("%s", diagnostics.first.text);
+		CHECK(gltf_scenery_add(&maker, &gltf, node, &choice, &warnings) == 0);
+		CHECK(scenery_maker_end(&maker, &s) == 0 && scenery_is_sane(&s));
+		CHECK(shows_the_picture(&s) == (i < 2) && (warnings.count == 0) == (i < 2));
+		if (i == 2)
+			CHECK(strstr(warnings.first.text,
+				     "a.gltf:2: the picture none.png is left"));
+		if (i == 3)
+			CHECK(strstr(warnings.first.text, "it is neither JPEG nor PNG"));
+		scenery_finish(&s);
+		gltf_finish(&gltf);
+	}
+	free(base64);
+	buffer_finish(&png);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_square_is_divided_until_its_picture_shows),
+		cmocka_unit_test(all_pictures_stay_within_their_budget),
+		cmocka_unit_test(an_image_texture_takes_the_place_of_the_colour),
+		cmocka_unit_test(a_picture_that_cannot_be_read_is_a_warning),
+		cmocka_unit_test(a_base_colour_texture_is_shown),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
