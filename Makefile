@@ -238,6 +238,7 @@ $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCH
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/bench/%: EXTRA += -lmeshoptimizer -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
+$(BUILD)/tests/bench/bench_materials: EXTRA += -lcmocka
 $(BUILD)/tests/bench/bench_page: EXTRA += $(addprefix -Wl$(comma)--wrap=,frame_draw fingers_on_touch overlay_update)
 $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BENCH_PARTS) $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)

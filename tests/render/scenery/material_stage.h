@@ -12,7 +12,7 @@
 #include "geometry/vec.h"
 #include "tests/check.h"
 
-enum { STAGE_MESHES_MAX = 16, STAGE_LATTICE = 65534 };
+enum { STAGE_MESHES_MAX = 32, STAGE_LATTICE = 65534 };
 
 /* Ends with scenery_finish. */
 static inline void stage_init(struct scenery *s)

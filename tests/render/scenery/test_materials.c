@@ -345,6 +345,7 @@ static void every_material_is_what_software_makes_of_it(void **state)
 	int worse = 0;
 
 	(void)state;
+	memset(sheet, 255, sizeof(sheet));
 	CHECK(headless_create(&headless) == 0);
 	CHECK(gl_target_create(&target, WIDTH, HEIGHT) == 0);
 	for (int i = 0; i < CASES; i++) {
