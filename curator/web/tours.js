@@ -136,7 +136,8 @@ function showTours() {
     const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
     button.type = "button";
     button.append(Object.assign(document.createElement("strong"), { textContent: titleOf(one) }), small);
-    small.textContent = `${one.stops.length} stops${one.attract ? ", while nobody is there" : ""}`;
+    const views = one.scene ? `views of ${one.scene}` : `${one.stops.length} stops`; // docs/tours.md
+    small.textContent = `${views}${one.attract ? ", while nobody is there" : ""}`;
     button.setAttribute("aria-current", String(one === tour));
     button.addEventListener("click", () => open(one));
     item.append(button);
@@ -175,7 +176,7 @@ function show() {
   const is = Boolean(tour);
   byId("work").hidden = !is;
   byId("nothing").hidden = is;
-  byId("keep").disabled = !is || !eye.camera || !may("editor") || tour.stops.length >= STOPS_MAX;
+  byId("keep").disabled = !is || tour.scene || !eye.camera || !may("editor") || tour.stops.length >= STOPS_MAX;
   showTours();
   if (!is) return;
   showLanguages();
