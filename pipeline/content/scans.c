@@ -19,7 +19,7 @@
  * CLOSING_VERSION whenever surface = octree makes another of it. */
 enum {
 	IMPORT_VERSION = 2,
-	CLOSING_VERSION = 2,
+	CLOSING_VERSION = 3,
 	SHAPE_VERSION = 2,
 	KEY_TEXT_MAX = 1 << 26,
 	SHAPE_BYTES_MAX = 4096

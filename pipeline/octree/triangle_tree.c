@@ -11,6 +11,9 @@
 /* docs/octree.md has what larger and smaller numbers cost and give. */
 static const float default_far_radii = 2;
 
+/* Distances that differ by a smaller share are equal. */
+static const float as_near = 1e-5f;
+
 /* ---- building */
 
 static void extend(const void *data, uint32_t number, float low[3], float high[3])
@@ -311,44 +314,6 @@ static float box_distance_squared(const struct bvh_node *node, const float at[3]
 	return sum;
 }
 
-bool triangle_tree_nearest(const struct triangle_tree *tree, const float at[3], float reach,
-			   struct triangle_place *out)
-{
-	uint32_t stack[BVH_STACK_MAX + 1], depth = 1;
-	struct triangle_place best = { .distance = reach };
-	bool is_found = false;
-
-	stack[0] = 0;
-	while (depth > 0) {
-		const uint32_t n = stack[--depth];
-		const struct bvh_node *node = &tree->nodes[n];
-
-		if (box_distance_squared(node, at) >= best.distance * best.distance)
-			continue;
-		if (node->right) {
-			const bool left_first = box_distance_squared(&tree->nodes[n + 1], at) <
-						box_distance_squared(&tree->nodes[node->right], at);
-
-			stack[depth++] = left_first ? node->right : n + 1;
-			stack[depth++] = left_first ? n + 1 : node->right;
-			continue;
-		}
-		for (uint32_t i = node->first; i < node->first + node->count; i++) {
-			const float before = best.distance;
-
-			nearest_on(&best, tree->corners[i], at);
-			if (best.distance < before) {
-				best.triangle = tree->order[i];
-				best.at = i;
-				is_found = true;
-			}
-		}
-	}
-	if (is_found)
-		*out = best;
-	return is_found;
-}
-
 void triangle_tree_normal(const struct triangle_tree *tree, const struct triangle_place *place,
 			  float normal[3], float at[3])
 {
@@ -359,6 +324,66 @@ void triangle_tree_normal(const struct triangle_tree *tree, const struct triangl
 	for (int k = 0; k < 3; k++)
 		at[k] = place->shares[0] * corners[0][k] + place->shares[1] * corners[1][k] +
 			place->shares[2] * corners[2][k];
+}
+
+/* Returns the cosine between the normal of the triangle of a place and the way to it, 0 .. 1. */
+static float lean_of(const struct triangle_tree *tree, const struct triangle_place *place,
+		     const float at[3])
+{
+	float normal[3], off[3];
+
+	triangle_tree_normal(tree, place, normal, off);
+	vec_sub(off, off, at);
+	return place->distance > 0 ? fabsf(vec_dot(off, normal)) / place->distance : 1;
+}
+
+/* Keeps triangle i if it is nearer; if it is as near, as at an edge that both share, the one that
+ * faces the place more, because only that one tells on which side the place is. */
+static void consider(const struct triangle_tree *tree, struct triangle_place *best, uint32_t i,
+		     const float at[3])
+{
+	struct triangle_place place = { .distance = best->distance * (1 + as_near) };
+
+	nearest_on(&place, tree->corners[i], at);
+	if (!(place.distance < best->distance * (1 + as_near)))
+		return;
+	place.triangle = tree->order[i];
+	place.at = i;
+	if (place.distance < best->distance * (1 - as_near) ||
+	    lean_of(tree, &place, at) > lean_of(tree, best, at))
+		*best = place;
+}
+
+bool triangle_tree_nearest(const struct triangle_tree *tree, const float at[3], float reach,
+			   struct triangle_place *out)
+{
+	uint32_t stack[BVH_STACK_MAX + 1], depth = 1;
+	/* until one is found, that of no triangle: what lies just at reach may replace it or not */
+	struct triangle_place best = { .distance = reach };
+
+	stack[0] = 0;
+	while (depth > 0) {
+		const uint32_t n = stack[--depth];
+		const struct bvh_node *node = &tree->nodes[n];
+
+		if (box_distance_squared(node, at) >
+		    best.distance * best.distance * (1 + 3 * as_near))
+			continue;
+		if (node->right) {
+			const bool left_first = box_distance_squared(&tree->nodes[n + 1], at) <
+						box_distance_squared(&tree->nodes[node->right], at);
+
+			stack[depth++] = left_first ? node->right : n + 1;
+			stack[depth++] = left_first ? n + 1 : node->right;
+			continue;
+		}
+		for (uint32_t i = node->first; i < node->first + node->count; i++)
+			consider(tree, &best, i, at);
+	}
+	if (!(best.distance < reach))
+		return false;
+	*out = best;
+	return true;
 }
 
 /* ---- rays */

@@ -49,7 +49,8 @@ must_check int triangle_tree_turn(struct triangle_tree *tree, const uint8_t *tur
 /* Returns the winding number, with an error of about 0.01. Any thread may call, as the two below.
  */
 double triangle_tree_winding(const struct triangle_tree *tree, const float at[3]);
-/* Finds the nearest place on a triangle that is nearer than `reach`. Returns false if there is
+/* Finds the nearest place on a triangle that is nearer than `reach`; of triangles that share it, on
+ * the one that faces `at` most. Returns false if there is
  * none; *out is then unchanged. */
 bool triangle_tree_nearest(const struct triangle_tree *tree, const float at[3], float reach,
 			   struct triangle_place *out);
