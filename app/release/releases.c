@@ -12,6 +12,7 @@ static void on_begin(void *data, struct hash root, uint32_t root_bytes)
 	struct releases *releases = data;
 
 	sessions_begin(&releases->sessions, root, root_bytes);
+	redraw_ask(releases->options.sessions.redraw);
 }
 
 static void on_remembered(void *data, struct hash root, int rc)
@@ -47,7 +48,6 @@ static void on_file(void *data, const struct message_file *file)
 
 	updater_file(releases->updater, file);
 	net_client_trust(releases->net, updater_root_version(releases->updater));
-	redraw_ask(releases->options.sessions.redraw);
 }
 
 static void on_missing(void *data, struct hash hash, enum missing_reason reason)
@@ -67,7 +67,6 @@ static void on_meta(void *data, enum meta_role role, uint32_t version, struct by
 
 	updater_meta(releases->updater, role, version, bytes, source);
 	net_client_trust(releases->net, updater_root_version(releases->updater));
-	redraw_ask(releases->options.sessions.redraw);
 }
 
 static void on_synced(void *data, bool done)

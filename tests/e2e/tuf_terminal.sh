@@ -53,6 +53,15 @@ terminal fresh "$keys/tuf/1.root.json"
 wait_for 60 "the first release of a new terminal" shown fresh 1
 said fresh 'release 4 is published' || fail "a new terminal shows another release"
 
+# ---- rounds in which nothing is new draw nothing
+rests() {
+	local frames
+	frames=$(figure fresh gopura_kiosk_frames_total)
+	sleep 4
+	[ "$(figure fresh gopura_kiosk_frames_total)" = "$frames" ]
+}
+wait_for 40 "rest" rests
+
 # ---- the next root
 tests/e2e/tuf_sign.py "$keys" "$release" root 'expires="2040-01-01T00:00:00Z"'
 publish "under root 2"
