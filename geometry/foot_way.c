@@ -12,21 +12,19 @@
 #include "geometry/solid_space.h"
 #include "geometry/vec.h"
 
-#define STEP_M     0.35f /* between neighbouring places */
-#define UP_M       0.6f  /* a step up: stairs of temples are steep, up to 60 degrees */
-#define DOWN_M     0.8f
-#define STOOP_M    0.5f   /* the lowest an eye goes above the floor */
-#define LIFT_M     0.002f /* above a floor, where it is free */
-#define STOOP_COST 2.0f   /* a metre of way, for each metre that the head is lowered */
-#define CLIMB_COST 0.5f   /* for each metre up or down */
-#define EAGERNESS  1.5f   /* as that of flights: not always the shortest way, but found soon */
-#define FLOORS_M   0.4f   /* floors of one place are at least so far apart */
-#define UNEVEN_M                                                                                   \
-	0.08f            /* by which, a few times, a floor may be higher than where it was touched \
-			  */
-#define BEFORE_M    0.5f /* from a wall that was touched */
-#define EVEN_ROUNDS 6    /* in which the heights of a way are evened out */
-#define OFF_LINE_M  0.1f /* a straight line may leave out what is so near to it */
+#define STEP_M      0.35f /* between neighbouring places */
+#define UP_M        0.6f  /* a step up: stairs of temples are steep, up to 60 degrees */
+#define DOWN_M      0.8f
+#define STOOP_M     0.5f   /* the lowest an eye goes above the floor */
+#define LIFT_M      0.002f /* above a floor, where it is free */
+#define STOOP_COST  2.0f   /* a metre of way, for each metre that the head is lowered */
+#define CLIMB_COST  0.5f   /* for each metre up or down */
+#define EAGERNESS   1.5f   /* as that of flights: not always the shortest way, but found soon */
+#define FLOORS_M    0.4f   /* floors of one place are at least so far apart */
+#define UNEVEN_M    0.08f  /* a floor may be a few times so much higher than where it was touched */
+#define BEFORE_M    0.9f   /* from a wall that was touched */
+#define EVEN_ROUNDS 6      /* in which the heights of a way are evened out */
+#define OFF_LINE_M  0.1f   /* a straight line may leave out what is so near to it */
 
 enum { PLACES_MAX = 8000, TRIALS = 4 };
 

@@ -411,6 +411,14 @@ static float last_heading(const struct navigator *nav)
 	return atan2f(end[1] - before[1], end[0] - before[0]);
 }
 
+/* Looks at what was touched, if that is not the floor under the feet. */
+static float heading_to(const float touched_m[3], const float end_m[3], float otherwise)
+{
+	const float x = touched_m[0] - end_m[0], y = touched_m[1] - end_m[1];
+
+	return hypotf(x, y) > FOOT_STEP_M ? atan2f(y, x) : otherwise;
+}
+
 bool navigator_walk(struct navigator *nav, const float touched_m[3])
 {
 	const struct foot foot = foot_of(nav);
@@ -424,7 +432,8 @@ bool navigator_walk(struct navigator *nav, const float touched_m[3])
 	    nav->eye_m[2] > from.eye_m[2] + STANDS_M) {
 		float ahead[3];
 
-		const float heading = open_heading(nav, to.eye_m, nav->yaw);
+		const float heading =
+			heading_to(touched_m, to.eye_m, open_heading(nav, to.eye_m, nav->yaw));
 
 		vec_copy(ahead, to.eye_m);
 		ahead[0] += cosf(heading);
@@ -435,7 +444,7 @@ bool navigator_walk(struct navigator *nav, const float touched_m[3])
 	if (foot_way_plan(&nav->way, &foot, &from, &to) < 0)
 		return false;
 	nav->walks = true;
-	nav->to_yaw = open_heading(nav, solid_way_end_m(&nav->way), last_heading(nav));
+	nav->to_yaw = heading_to(touched_m, solid_way_end_m(&nav->way), last_heading(nav));
 	nav->to_pitch = 0;
 	nav->flight_ms = nav->flight_left_ms =
 		clamp(solid_way_length_m(&nav->way) / WALK_M_PER_S * 1000, 600, WALK_MS_MAX);
