@@ -9,6 +9,12 @@ rm -rf "$work"
 mkdir -p "$work/out" "$work/again"
 gopura=build/gopura-content
 "$gopura" annotations export demo/content --out "$work/out/demo.jsonld"
+# Scenes are not exchanged; a tour leads through one of them.
+! "$gopura" annotations import "$work/out/demo.jsonld" --into "$work/copy" 2>"$work/scene.log" || fail "a tour without its scene was taken"
+grep -q 'scenes.json does not name "scenes/walk.wrl"' "$work/scene.log" || fail "not said what is missing: $(cat "$work/scene.log")"
+[ ! -e "$work/copy" ] || fail "something was left"
+mkdir "$work/copy"
+cp -r demo/content/scenes.json demo/content/scenes "$work/copy/"
 "$gopura" annotations import "$work/out/demo.jsonld" --into "$work/copy"
 "$gopura" annotations export "$work/copy" --out "$work/again/demo.jsonld"
 cmp "$work/out/demo.jsonld" "$work/again/demo.jsonld" || fail "the round trip lost something"
