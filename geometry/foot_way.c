@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/map.h"
+#include "geometry/search_queue.h"
 #include "geometry/solid_space.h"
 #include "geometry/vec.h"
 
@@ -127,54 +128,16 @@ struct place {
 	bool done;
 };
 
-struct entry {
-	float total;
-	uint32_t place;
-};
-
 struct search {
 	const struct foot *foot;
 	const struct foot_stance *to;
 	float origin_m[2];
-	struct place *places; /* owned, as the next three */
+	struct place *places; /* owned */
 	uint32_t place_count, place_room;
-	struct entry *heap; /* the least total first */
-	uint32_t heap_count, heap_room;
-	struct map place_of; /* by column and floor */
-	uint32_t nearest;    /* to the end */
+	struct search_queue queue; /* by cost, and EAGERNESS times the distance that is left */
+	struct map place_of;       /* by column and floor */
+	uint32_t nearest;          /* to the end */
 };
-
-static int heap_push(struct search *search, struct entry entry)
-{
-	uint32_t at = search->heap_count;
-
-	if (ARRAY_RESERVE(search->heap, search->heap_room, at + 1, UINT32_MAX) < 0)
-		return -ENOMEM;
-	search->heap_count++;
-	while (at > 0 && search->heap[(at - 1) / 2].total > entry.total) {
-		search->heap[at] = search->heap[(at - 1) / 2];
-		at = (at - 1) / 2;
-	}
-	search->heap[at] = entry;
-	return 0;
-}
-
-static struct entry heap_pop(struct search *search)
-{
-	const struct entry top = search->heap[0], last = search->heap[--search->heap_count];
-	uint32_t at = 0, child;
-
-	while ((child = 2 * at + 1) < search->heap_count) {
-		child += child + 1 < search->heap_count &&
-			 search->heap[child + 1].total < search->heap[child].total;
-		if (search->heap[child].total >= last.total)
-			break;
-		search->heap[at] = search->heap[child];
-		at = child;
-	}
-	search->heap[at] = last;
-	return top;
-}
 
 static float left_m(const struct search *search, const struct foot_stance *stance)
 {
@@ -221,8 +184,8 @@ static int come(struct search *search, const struct foot_stance *stance, const i
 	search->places[index] = (struct place){ *stance, { at[0], at[1] }, from, cost, false };
 	if (left_m(search, stance) < left_m(search, &search->places[search->nearest].stance))
 		search->nearest = (uint32_t)index;
-	return heap_push(search, (struct entry){ cost + EAGERNESS * left_m(search, stance),
-						 (uint32_t)index });
+	return search_queue_add(&search->queue, cost + EAGERNESS * left_m(search, stance),
+				(uint32_t)index);
 }
 
 static int step_out(struct search *search, uint32_t index)
@@ -265,8 +228,8 @@ static int find(struct search *search, const struct foot_stance *from)
 	search->origin_m[0] = from->eye_m[0];
 	search->origin_m[1] = from->eye_m[1];
 	rc = come(search, from, at, 0, 0);
-	while (rc == 0 && search->heap_count > 0) {
-		const uint32_t index = heap_pop(search).place;
+	while (rc == 0 && search->queue.count > 0) {
+		const uint32_t index = search_queue_take(&search->queue);
 
 		if (search->places[index].done)
 			continue;
@@ -475,7 +438,7 @@ int foot_way_plan(struct solid_way *way, const struct foot *foot, const struct f
 	if (rc >= 0)
 		rc = make_way(way, &search, rc > 0);
 	free(search.places);
-	free(search.heap);
+	search_queue_finish(&search.queue);
 	map_finish(&search.place_of);
 	return rc;
 }

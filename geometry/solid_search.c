@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geometry/search_queue.h"
 
 /* Near stone cells are small. A way through them costs more, so that it keeps to the middle. */
 #define STONE_COST 2.0f
@@ -23,19 +24,13 @@ struct visit {
 	bool done;
 };
 
-struct entry {
-	float total; /* cost, and EAGERNESS times the distance that is left */
-	uint32_t visit;
-};
-
 struct search {
 	const struct solid *solid;
 	float to[3]; /* the centre of the last cell, in smallest cells */
 	struct visit *visits;
 	uint32_t visit_count, visit_room;
-	struct entry *heap; /* the least total first */
-	uint32_t heap_count, heap_room;
-	uint32_t *visit_of; /* of each cell's id: its visit + 1 */
+	struct search_queue queue; /* by cost, and EAGERNESS times the distance that is left */
+	uint32_t *visit_of;        /* of each cell's id: its visit + 1 */
 };
 
 static void centre_of(const struct solid_cell *cell, float out[3])
@@ -51,40 +46,6 @@ static float apart(const float a[3], const float b[3])
 	for (int axis = 0; axis < 3; axis++)
 		sum += (a[axis] - b[axis]) * (a[axis] - b[axis]);
 	return sqrtf(sum);
-}
-
-/* ---- the heap */
-
-static int heap_push(struct search *search, struct entry entry)
-{
-	uint32_t at = search->heap_count;
-
-	if (ARRAY_RESERVE(search->heap, search->heap_room, at + 1, UINT32_MAX) < 0)
-		return -ENOMEM;
-	search->heap_count++;
-	while (at > 0 && search->heap[(at - 1) / 2].total > entry.total) {
-		search->heap[at] = search->heap[(at - 1) / 2];
-		at = (at - 1) / 2;
-	}
-	search->heap[at] = entry;
-	return 0;
-}
-
-static struct entry heap_pop(struct search *search)
-{
-	const struct entry top = search->heap[0], last = search->heap[--search->heap_count];
-	uint32_t at = 0, child;
-
-	while ((child = 2 * at + 1) < search->heap_count) {
-		child += child + 1 < search->heap_count &&
-			 search->heap[child + 1].total < search->heap[child].total;
-		if (search->heap[child].total >= last.total)
-			break;
-		search->heap[at] = search->heap[child];
-		at = child;
-	}
-	search->heap[at] = last;
-	return top;
 }
 
 /* ---- the search */
@@ -108,8 +69,8 @@ static int visit(struct search *search, const struct solid_cell *cell, uint32_t 
 	if (search->visits[*of - 1].cost <= cost)
 		return 0;
 	search->visits[*of - 1] = (struct visit){ .cell = *cell, .from = from, .cost = cost };
-	return heap_push(search,
-			 (struct entry){ cost + EAGERNESS * apart(centre, search->to), *of - 1 });
+	return search_queue_add(&search->queue, cost + EAGERNESS * apart(centre, search->to),
+				*of - 1);
 }
 
 static int step(struct search *search, uint32_t at, const struct solid_cell *cell)
@@ -174,8 +135,8 @@ static int64_t find(struct search *search, const struct solid_cell *from,
 	search->visit_of =
 		calloc(search->solid->node_count, SOLID_CHILDREN * sizeof(*search->visit_of));
 	rc = search->visit_of ? visit(search, from, 0, 0) : -ENOMEM;
-	while (rc == 0 && search->heap_count > 0) {
-		const uint32_t at = heap_pop(search).visit;
+	while (rc == 0 && search->queue.count > 0) {
+		const uint32_t at = search_queue_take(&search->queue);
 
 		if (search->visits[at].cell.id == to->id)
 			return at;
@@ -226,7 +187,7 @@ int solid_search(const struct solid *solid, const int32_t from[3], const int32_t
 	if (at >= 0)
 		at = take_points(&search, (uint32_t)at, points_m, count);
 	free(search.visits);
-	free(search.heap);
+	search_queue_finish(&search.queue);
 	free(search.visit_of);
 	return (int)at;
 }
