@@ -10,16 +10,18 @@ fail() {
 	exit 1
 }
 
+# The bar of the tests' terminals is that of two tools: recorded fingers know where its buttons are. What the section
+# cuts is plainly red.
+plain_tools() { sed -i -e 's/^tools *=.*/tools = light section/' -e '/^cut *=/d' "$1/temple.ini"; }
+
 # A small temple and its release, built once for all tests: build/e2e/small/{content,release}. To publish to a copy of
 # that release, sign with its keys: --keys "$small_keys".
 small=build/e2e/small small_keys=build/e2e/small/keys
 export XDG_CONFIG_HOME=$PWD/build/e2e/config # nothing is written into the home
-# The bar of the tests' terminals is that of two tools: recorded fingers know where its buttons are.
-two_tools() { sed -i 's/^tools *=.*/tools = light section/' "$1/temple.ini"; }
 small_release() {
 	[ -z "${RELEASES_MADE:-}" ] || return 0 # by the runner, whose tests run beside one another
 	demo/make-content.sh "$small/content" 200000
-	two_tools "$small/content"
+	plain_tools "$small/content"
 	sed -i -e 's/^points *=.*/points = 6/' -e 's/^face_px *=.*/face_px = 512/' -e '/^effort/d' \
 		-e 's/^publish_share *=.*/publish_share = 0.25/' "$small/content/temple.ini"
 	build/gopura-content build "$small/content" --out "$small/release" --keys "$small_keys" >"$small/log" 2>&1 || { cat "$small/log"; fail "no small temple"; }
@@ -36,7 +38,7 @@ demo=build/e2e/demo
 demo_release() {
 	[ -z "${RELEASES_MADE:-}" ] || return 0 # as above
 	demo/make-content.sh "$demo/content" 500000
-	two_tools "$demo/content"
+	plain_tools "$demo/content"
 	sed -i 's/^face_px *=.*/face_px = 1024/' "$demo/content/temple.ini"
 	build/gopura-content build "$demo/content" --out "$demo/release" --keys "$demo/keys"
 }
