@@ -118,15 +118,15 @@ cat >"$work/measure.touch" <<'T'
 16080 up 0
 17500 down 0 480 400
 17580 up 0
-23000 down 0 480 400
-23080 up 0
-29000 down 0 300 300
-29100 move 0 360 300
-29200 move 0 420 300
-29300 move 0 420 300
-29400 up 0
+23000 down 0 200 300
+23100 move 0 450 300
+23200 move 0 700 300
+23300 move 0 700 300
+23400 up 0
+26000 down 0 165 385
+26080 up 0
 T
-printf '%s\n' '6000 hint' '12500 measured' '15800 after' '22500 down' '28500 along' '31000 around' >"$work/measure-shots.txt"
+printf '%s\n' '6000 hint' '12500 measured' '15800 after' '22500 down' '25500 around' '33000 along' >"$work/measure-shots.txt"
 build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless \
 	--size 960x540 --release "$work/exact/release" --trust "$work/exact/release/root/1.json" \
 	--state "$work/exact/state" --log debug --touch-replay "$work/measure.touch" --capture "$work/measure" \
