@@ -24,10 +24,12 @@
 #define STANDING_M         1.6f   /* the eye's height on foot */
 #define STANDS_M           0.5f   /* so far above that it still stands there */
 #define WALK_M_PER_S       3.0f   /* brisk: visitors wait */
+#define WALK_MS_MIN        600.0f
 #define WALK_MS_MAX        12000.0f
-#define AHEAD_M            2.0f   /* what a walk looks at on its way */
-#define TURN_MS            350.0f /* in which it has turned there, but for a third */
-#define PACE_M             2.0f   /* a pinch by a factor of e walks so far */
+#define DESCENT_MS         1800.0f /* of the flight to the floor */
+#define AHEAD_M            2.0f    /* what a walk looks at on its way */
+#define TURN_MS            350.0f  /* in which it has turned there, but for a third */
+#define PACE_M             2.0f    /* a pinch by a factor of e walks so far */
 #define FOOT_STEP_M        0.3f
 #define VIEW_M             1.5f /* what is farther off is seen as well as anything */
 
@@ -215,9 +217,21 @@ static struct foot foot_of(const struct navigator *nav)
 			      .height_m = STANDING_M };
 }
 
+/* Returns whether the eye is where somebody stands, and not in the air; *at becomes where. */
+static bool stands(const struct navigator *nav, struct foot_stance *at)
+{
+	const struct foot foot = foot_of(nav);
+
+	return foot.solid && foot_stand(&foot, nav->eye_m, INFINITY, at) &&
+	       nav->eye_m[2] <= at->eye_m[2] + STANDS_M;
+}
+
+/* In the air, from where the first walk leads down, fingers move the eye as ever. */
 static bool walks_now(const struct navigator *nav)
 {
-	return nav->on_foot && solid_of(nav);
+	struct foot_stance at;
+
+	return nav->on_foot && stands(nav, &at);
 }
 
 /* As if the picture were held by the finger. */
@@ -238,7 +252,7 @@ static void step_on(struct navigator *nav, float forward_m, float right_m)
 	const int steps = (int)ceilf(hypotf(x, y) / FOOT_STEP_M);
 	struct foot_stance at;
 
-	if (!foot_stand(&foot, nav->eye_m, INFINITY, &at))
+	if (!stands(nav, &at))
 		return;
 	for (int i = 0; i < steps; i++) {
 		const float by_x = x / (float)steps, by_y = y / (float)steps;
@@ -428,17 +442,15 @@ bool navigator_walk(struct navigator *nav, const float touched_m[3])
 		return false;
 	stop(nav);
 	leave_stone(nav);
-	if (!foot_stand(&foot, nav->eye_m, INFINITY, &from) ||
-	    nav->eye_m[2] > from.eye_m[2] + STANDS_M) {
-		float ahead[3];
-
+	if (!stands(nav, &from)) {
 		const float heading =
 			heading_to(touched_m, to.eye_m, open_heading(nav, to.eye_m, nav->yaw));
+		float ahead[3];
 
 		vec_copy(ahead, to.eye_m);
 		ahead[0] += cosf(heading);
 		ahead[1] += sinf(heading);
-		navigator_fly(nav, to.eye_m, ahead, 2 * 900);
+		navigator_fly(nav, to.eye_m, ahead, DESCENT_MS);
 		return true;
 	}
 	if (foot_way_plan(&nav->way, &foot, &from, &to) < 0)
@@ -446,8 +458,8 @@ bool navigator_walk(struct navigator *nav, const float touched_m[3])
 	nav->walks = true;
 	nav->to_yaw = heading_to(touched_m, solid_way_end_m(&nav->way), last_heading(nav));
 	nav->to_pitch = 0;
-	nav->flight_ms = nav->flight_left_ms =
-		clamp(solid_way_length_m(&nav->way) / WALK_M_PER_S * 1000, 600, WALK_MS_MAX);
+	nav->flight_ms = nav->flight_left_ms = clamp(
+		solid_way_length_m(&nav->way) / WALK_M_PER_S * 1000, WALK_MS_MIN, WALK_MS_MAX);
 	return true;
 }
 

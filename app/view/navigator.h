@@ -64,11 +64,11 @@ void navigator_fling(struct navigator *nav, float vx_px_s, float vy_px_s);
  * proportionally longer, at most twice that time. */
 void navigator_fly(struct navigator *nav, const float eye_m[3], const float target_m[3],
 		   float duration_ms);
-/* Says whether fingers move somebody who walks, from now on. Nothing moves. Without an octree
- * fingers move as ever. */
+/* Says whether fingers move somebody who walks, from now on. Nothing moves. In the air, and
+ * without an octree, they move the eye as ever. */
 void navigator_set_on_foot(struct navigator *nav, bool on_foot);
 /* Walks to a touched point of a floor, or before what else was touched, as near as there is a way;
- * from where nobody stands it flies there. Returns false if it cannot; then nothing moves. */
+ * from where nobody stands it flies there. Returns false if it cannot; the eye then stays. */
 bool navigator_walk(struct navigator *nav, const float touched_m[3]);
 /* Writes the pose that the eye has, or flies to. */
 void navigator_goal(const struct navigator *nav, float eye_m[3], float target_m[3]);

@@ -33,10 +33,9 @@ struct scenery_programs {
 };
 
 /* Returns the program with those features, bits of the above and of SURFACE_TOOLS, for a release's
- * root_page.cut; it is built
- * where it is missing. Borrowed until the next call. What the driver refuses is drawn without its
- * material, then without tools; NULL: it refuses that too, or memory is short. Substances and
- * relief need fragments with highp; without, they are left out. */
+ * root_page.cut; a missing one is built. Borrowed until the next call. What the driver refuses is
+ * drawn without its material, then without tools; NULL: it refuses that too, or memory is short.
+ * Substances and relief need fragments with highp; without, they are left out. */
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
 						   unsigned features, uint8_t cut);
 void scenery_programs_finish(struct scenery_programs *programs); /* zeroed is fine */

@@ -488,6 +488,10 @@ static void on_foot_one_stays_on_the_floor(void **state)
 	(void)state;
 	navigator_init(&nav, &options);
 	navigator_set_on_foot(&nav, true);
+	vec_copy(was, nav.eye_m);
+	navigator_grab(&nav, middle);
+	navigator_pinch(&nav, 1.1f, 0, 0, 0, HEIGHT_PX); /* in the air as ever: nearer, not down */
+	CHECK(nav.eye_m[2] > was[2] / 2 && vec_distance(nav.eye_m, was) > 0.1f);
 	CHECK(navigator_walk(&nav, floor_m)); /* from the air: a flight */
 	while (navigator_step(&nav, 16, HEIGHT_PX))
 		CHECK(solid_is_free(&built, nav.eye_m));
