@@ -181,6 +181,7 @@ static int start_releases(struct kiosk *kiosk, const char *folder)
 	struct releases_options releases = {
 		.state_path = state,
 		.trust_path = options->trust_path,
+		.target = options->target,
 		.net = { .socket_path = options->socket_path,
 			 .program = options->fetch_program,
 			 /* Without a server or stick, a folder that holds no release: only what is

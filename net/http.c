@@ -195,6 +195,20 @@ static void take_etag(struct http_request *request, const char *text, size_t siz
 		snprintf(request->etag, sizeof(request->etag), "%.*s", (int)size, text);
 }
 
+/* Returns whether a whole file that is announced with this length ("content-length: 5000") is
+ * larger than it may be, so that nothing of it is worth reading. */
+static bool announces_too_much(struct http_request *request, const char *line, size_t size)
+{
+	char copy[64];
+	long status = 0;
+
+	curl_easy_getinfo(request->easy, CURLINFO_RESPONSE_CODE, &status);
+	if (status != 200 || request->get.size > 0)
+		return false;
+	snprintf(copy, sizeof(copy), "%.*s", (int)size, line);
+	return strtoull(copy + strlen("content-length:"), NULL, 10) > request->get.ceiling;
+}
+
 static size_t on_header(char *line, size_t one, size_t size, void *data)
 {
 	struct http_request *request = data;
@@ -211,6 +225,10 @@ static size_t on_header(char *line, size_t one, size_t size, void *data)
 		request->etag[0] = '\0';
 	} else if (header_is(line, size, "content-range:")) {
 		request->range_is_right = range_begins_at(line, size, request->get.first);
+	} else if (header_is(line, size, "content-length:") &&
+		   announces_too_much(request, line, size)) {
+		request->refused = true;
+		return 0; /* curl then ends the request */
 	} else if (header_is(line, size, "etag:")) {
 		take_etag(request, line + 5, size - 5);
 	}
@@ -385,6 +403,8 @@ static void finish_request(CURL *easy, CURLcode code)
 		snprintf(why, sizeof(why), "it redirects to another host, or too often");
 	else if (request->status >= 400)
 		snprintf(why, sizeof(why), "HTTP status %ld", request->status);
+	else if (request->refused)
+		snprintf(why, sizeof(why), "another range than asked for, or too large");
 	else if (code == CURLE_OK || request->enough)
 		snprintf(why, sizeof(why), "fine");
 	else if (code == CURLE_OPERATION_TIMEDOUT)

@@ -25,7 +25,7 @@ struct http_result {
 	/* 0: the server answered and the body was delivered, or the receiver needed no more.
 	 * -ENOENT: the server answered, but does not have this file or this range.
 	 * -EBADMSG: the answer is not what was asked for: another range, or larger than the
-	 * ceiling.
+	 * ceiling. A file whose Content-Length is beyond the ceiling is refused before its body.
 	 * -EHOSTUNREACH: no answer, a broken or stalled one, or a server error (5xx). */
 	int rc;
 	bool not_modified; /* answer to a conditional request; there was no body */

@@ -35,12 +35,12 @@ enum {
 	AT_URL,
 	AT_TRUST,
 	AT_CA,
-	AT_ADDRESS = 15,
+	AT_ADDRESS = 16,
 	AT_GATEWAY,
-	AT_SSID = 20,
+	AT_SSID = 21,
 	AT_PASSPHRASE,
 	AT_COUNTRY,
-	AT_MDNS = 24,
+	AT_MDNS = 25,
 };
 
 static const struct setting settings[] = {
@@ -78,6 +78,10 @@ static const struct setting settings[] = {
 			       "such as ca.pem",
 		    .set = terminal_set_file,
 		    .offset = offsetof(struct terminal, ca) },
+	{ .section = "release",
+	  .name = "target",
+	  .expects = "the path of a target of The Update Framework, such as angkor/release.json",
+	  .set = terminal_set_target },
 	{ .section = "release",
 	  .name = "poll_s",
 	  .expects = "whole seconds from 60 to 86400",

@@ -13,7 +13,12 @@
 #include "base/settings.h"
 #include "system/hours.h"
 
-enum { TERMINAL_SERVERS_MAX = 4, TERMINAL_NAME_BYTES = 64, TERMINAL_URL_BYTES = 512 };
+enum {
+	TERMINAL_SERVERS_MAX = 4,
+	TERMINAL_NAME_BYTES = 64,
+	TERMINAL_URL_BYTES = 512,
+	TERMINAL_TARGET_BYTES = 97
+};
 /* Maximum size of a file that gopura.conf names. All certificate authorities of a system together
  * take a quarter of it. */
 enum { TERMINAL_FILE_BYTES_MAX = 1 << 20 };
@@ -41,8 +46,9 @@ struct terminal {
 	char board[32];                 /* name of a profile, without .ini */
 	/* [release] */
 	char release_url[TERMINAL_URL_BYTES]; /* https://, http:// or an absolute folder */
-	char trust[TERMINAL_NAME_BYTES]; /* name of a file beside gopura.conf, without slashes */
-	char ca[TERMINAL_NAME_BYTES];    /* the same */
+	char trust[TERMINAL_NAME_BYTES];    /* name of a file beside gopura.conf, without slashes */
+	char ca[TERMINAL_NAME_BYTES];       /* the same */
+	char target[TERMINAL_TARGET_BYTES]; /* path among the targets of The Update Framework */
 	char redirect_hosts[TERMINAL_URL_BYTES]; /* "cdn.example,cdn2.example:8443" */
 	uint32_t poll_s;                         /* 60 .. 86400; 0: not set */
 	struct daily download;                   /* local time of day; both ends equal: always */

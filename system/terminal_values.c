@@ -133,6 +133,18 @@ bool terminal_set_file(const struct setting *setting, void *target, const char *
 	       put((char *)target + setting->offset, TERMINAL_NAME_BYTES, value);
 }
 
+/* No part of the path is empty or begins with a dot. */
+bool terminal_set_target(const struct setting *setting, void *target, const char *value)
+{
+	const size_t size = strlen(value);
+
+	(void)setting;
+	return only(value, LETTERS BIG_LETTERS DIGITS "._-/") && size > 0 && *value != '.' &&
+	       *value != '/' && value[size - 1] != '/' && !strstr(value, "//") &&
+	       !strstr(value, "/.") &&
+	       put(((struct terminal *)target)->target, TERMINAL_TARGET_BYTES, value);
+}
+
 bool terminal_set_download(const struct setting *setting, void *target, const char *value)
 {
 	struct terminal *terminal = target;

@@ -21,6 +21,8 @@ bool terminal_set_board(const struct setting *setting, void *target, const char 
 bool terminal_set_url(const struct setting *setting, void *target, const char *value);
 /* [release] trust and ca: a file name without folders; stored at setting->offset. */
 bool terminal_set_file(const struct setting *setting, void *target, const char *value);
+/* [release] target: the path of a target, without empty parts and parts that begin with a dot. */
+bool terminal_set_target(const struct setting *setting, void *target, const char *value);
 /* [release] download: two different times of day. */
 bool terminal_set_download(const struct setting *setting, void *target, const char *value);
 /* [panel] mode: WIDTHxHEIGHT or WIDTHxHEIGHT@HZ; 64 to 8192 pixels, 10 to 240 Hz. */

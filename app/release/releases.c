@@ -95,6 +95,7 @@ int releases_init(struct releases *releases, const struct releases_options *opti
 	const struct updater_options updater = {
 		.state_path = options->state_path,
 		.trust_path = options->trust_path,
+		.target = options->target,
 		.begin = on_begin,
 		.remembered = on_remembered,
 		.ask = on_ask,
@@ -106,6 +107,7 @@ int releases_init(struct releases *releases, const struct releases_options *opti
 
 	releases->options = *options;
 	releases->options.state_path = releases->options.trust_path = NULL; /* borrowed */
+	releases->options.target = NULL;
 	releases->options.net = (struct net_client_options){ 0 };
 	if (rc < 0)
 		return rc;

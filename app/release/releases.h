@@ -12,6 +12,7 @@
 struct releases_options {
 	const char *state_path; /* as for struct updater_options; borrowed for releases_init */
 	const char *trust_path; /* likewise */
+	const char *target;     /* likewise */
 	/* Its trust root and events are set here; strings are borrowed for releases_init. */
 	struct net_client_options net;
 	/* Its net, updater and wants are set here. */

@@ -73,7 +73,8 @@ static int keep(struct tuf_follower *follower, enum tuf_type type, struct bytes 
 	return kept->error;
 }
 
-int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kept)
+int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kept,
+		      const char *target)
 {
 	const struct bytes files[TUF_TYPES] = {
 		[TUF_ROOT] = kept->root,
@@ -84,6 +85,9 @@ int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kep
 	int rc = 0;
 
 	*follower = (struct tuf_follower){ 0 };
+	if (snprintf(follower->target, sizeof(follower->target), "%s",
+		     target ? target : "release.json") >= (int)sizeof(follower->target))
+		rc = -ENAMETOOLONG;
 	for (int type = 0; type < TUF_TYPES; type++)
 		buffer_init(&follower->kept[type], STATE_FILE_BYTES_MAX);
 	for (int type = 0; type < TUF_TYPES && rc == 0; type++)
@@ -421,7 +425,7 @@ int tuf_follower_run(struct tuf_follower *follower, enum meta_source source, int
 	int rc = tuf_client_refresh(&client, &io, now_s);
 
 	if (rc == 0)
-		rc = tuf_client_find(&client, "release.json", &target);
+		rc = tuf_client_find(&client, follower->target, &target);
 	if (rc < 0)
 		refuse(follower, rc, client.why);
 	else

@@ -11,6 +11,7 @@
 enum {
 	TUF_ROUND_FILES_MAX = 64, /* beyond them a round fails */
 	TUF_FIRST_ROOTS_MAX = 64, /* versions among which a terminal looks for its first root */
+	TUF_FOLLOWER_TARGET_BYTES = 97, /* of a target's path, with the zero at its end */
 };
 
 struct tuf_arrived {
@@ -29,6 +30,7 @@ struct tuf_round {
 struct tuf_follower {
 	struct buffer kept[TUF_TYPES]; /* what is trusted; no root: this form is not followed */
 	struct tuf_round rounds[2];    /* indexed by enum meta_source */
+	char target[TUF_FOLLOWER_TARGET_BYTES]; /* the path of this terminal's release.json */
 	/* What tuf_follower_run changed: kept, and floors to clear together with it. The caller
 	 * resets both. */
 	bool changed;
@@ -41,8 +43,11 @@ struct tuf_follower {
 	struct message_file ask;              /* after -EAGAIN: the file that is missing */
 };
 
-/* Copies what the state has, which may be nothing. -ENOMEM; call tuf_follower_finish also then. */
-must_check int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kept);
+/* Copies what the state has, which may be nothing. target: the path of this terminal's release.json
+ * among the targets, copied; NULL: "release.json". -ENOMEM, or -ENAMETOOLONG for the target; call
+ * tuf_follower_finish also then. */
+must_check int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kept,
+				 const char *target);
 /* Frees it. Zeroed is fine. */
 void tuf_follower_finish(struct tuf_follower *follower);
 /* Returns whether there is a root, so that this form is followed. */

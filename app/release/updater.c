@@ -136,7 +136,7 @@ static int read_state(struct updater *updater, struct state *state)
 
 	if (state_tuf(state, &tuf) < 0)
 		tuf = (struct state_tuf){ 0 };
-	rc = tuf_follower_init(&updater->tuf, &tuf);
+	rc = tuf_follower_init(&updater->tuf, &tuf, updater->options.target);
 	if (rc < 0)
 		return rc;
 	judge_trial(updater, state);
@@ -176,6 +176,7 @@ int updater_create(struct updater **out, const struct updater_options *options)
 	else
 		state_destroy(state);
 	updater->options.state_path = updater->options.trust_path = NULL; /* borrowed */
+	updater->options.target = NULL;
 	if (rc < 0) {
 		updater_destroy(updater);
 		return rc;

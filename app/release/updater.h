@@ -24,6 +24,8 @@ struct updater_options {
 	const char *state_path; /* state.db; borrowed, needed by updater_create only */
 	const char *trust_path; /* root/1.json, or the root of The Update Framework, to trust if the
 				   state has no root; borrowed likewise; NULL: none */
+	const char *target;     /* path of the release among the targets of The Update Framework;
+				   borrowed likewise; NULL: release.json */
 	/* Load this release: at start the stored one, later each new one, or the one before it.
 	 * Call updater_remember once it can be shown completely. */
 	void (*begin)(void *data, struct hash root, uint32_t root_bytes);

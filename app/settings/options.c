@@ -22,6 +22,8 @@ static const char help_text[] =
 	"  --release URL        where the release is: https://..., http://... or a folder\n"
 	"  --trust FILE         root/1.json of the release, or tuf/1.root.json (docs/tuf.md); needed for\n"
 	"                       the first start only\n"
+	"  --target PATH        which target of The Update Framework is the release\n"
+	"                       (default: release.json)\n"
 	"  --ca FILE            certificate authority of the server (default: the system's)\n"
 	"  --stick DIR          folder in which a USB stick with a release may be mounted\n"
 	"  --state DIR          folder of the state and the cache\n"
@@ -94,6 +96,7 @@ enum {
 	OPTION_BOARDS,
 	OPTION_RELEASE,
 	OPTION_TRUST,
+	OPTION_TARGET,
 	OPTION_CA,
 	OPTION_STATE,
 	OPTION_DISPLAY,
@@ -135,6 +138,7 @@ static const struct option long_options[] = {
 	{ "boards", required_argument, NULL, OPTION_BOARDS },
 	{ "release", required_argument, NULL, OPTION_RELEASE },
 	{ "trust", required_argument, NULL, OPTION_TRUST },
+	{ "target", required_argument, NULL, OPTION_TARGET },
 	{ "ca", required_argument, NULL, OPTION_CA },
 	{ "state", required_argument, NULL, OPTION_STATE },
 	{ "display", required_argument, NULL, OPTION_DISPLAY },
@@ -240,15 +244,25 @@ static bool set_text(struct options *o, int option, const char *text)
 		int option;
 		const char **to;
 	} texts[] = {
-		{ OPTION_BOARDS, &o->boards_dir },   { OPTION_STICK, &o->stick_dir },
-		{ OPTION_RELEASE, &o->release_url }, { OPTION_TRUST, &o->trust_path },
-		{ OPTION_CA, &o->ca_path },          { OPTION_STATE, &o->state_dir },
-		{ OPTION_DEVICE, &o->device },       { OPTION_BOARD, &o->board_path },
-		{ OPTION_LANGUAGE, &o->language },   { OPTION_TOUCH_REPLAY, &o->touch_replay_path },
-		{ OPTION_VIEWS, &o->views_path },    { OPTION_CAPTURE, &o->capture_dir },
-		{ OPTION_SHOTS, &o->shots_path },    { OPTION_FETCH, &o->fetch_program },
-		{ OPTION_SOCKET, &o->socket_path },  { OPTION_METRICS, &o->metrics_path },
-		{ OPTION_VISITS, &o->visits_path },  { OPTION_LOCALE, &o->locale_dir },
+		{ OPTION_BOARDS, &o->boards_dir },
+		{ OPTION_STICK, &o->stick_dir },
+		{ OPTION_RELEASE, &o->release_url },
+		{ OPTION_TRUST, &o->trust_path },
+		{ OPTION_TARGET, &o->target },
+		{ OPTION_CA, &o->ca_path },
+		{ OPTION_STATE, &o->state_dir },
+		{ OPTION_DEVICE, &o->device },
+		{ OPTION_BOARD, &o->board_path },
+		{ OPTION_LANGUAGE, &o->language },
+		{ OPTION_TOUCH_REPLAY, &o->touch_replay_path },
+		{ OPTION_VIEWS, &o->views_path },
+		{ OPTION_CAPTURE, &o->capture_dir },
+		{ OPTION_SHOTS, &o->shots_path },
+		{ OPTION_FETCH, &o->fetch_program },
+		{ OPTION_SOCKET, &o->socket_path },
+		{ OPTION_METRICS, &o->metrics_path },
+		{ OPTION_VISITS, &o->visits_path },
+		{ OPTION_LOCALE, &o->locale_dir },
 	};
 
 	for (size_t i = 0; i < ARRAY_COUNT(texts); i++)

@@ -22,6 +22,8 @@ struct options {
 	/* Folder in which a USB stick with a release may appear; NULL: none. */
 	const char *stick_dir;
 	const char *trust_path; /* root/1.json for the first start; NULL: the stored root */
+	/* Path of the release among the targets of The Update Framework; NULL: release.json. */
+	const char *target;
 	const char *ca_path;
 	/* Hosts that the server may redirect to; set from gopura.conf. */
 	const char *redirect_hosts;

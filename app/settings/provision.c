@@ -83,6 +83,7 @@ static void merge(struct provision *provision, struct options *options)
 	options->language = text_or(options->language, terminal->language);
 	if (!options->trust_path)
 		options->trust_path = checked_trust(provision);
+	options->target = text_or(options->target, terminal->target);
 	if (!options->ca_path)
 		options->ca_path = beside(provision, terminal->ca, provision->ca_path);
 	options->redirect_hosts = text_or(options->redirect_hosts, terminal->redirect_hosts);

@@ -49,6 +49,11 @@ static const struct script {
 	  ENDS },
 	{ "/not-modified", "HTTP/1.1 304 Not Modified\r\nETag: \"v1\"\r\n\r\n", ENDS },
 	{ "/absent", "HTTP/1.1 404 Not Found\r\nContent-Length: 7\r\n\r\nabsent!", ENDS },
+	{ "/absent-at-length",
+	  "HTTP/1.1 404 Not Found\r\nContent-Length: 40\r\n\r\n"
+	  "absent, as this page tells at its length",
+	  ENDS },
+	{ "/announced", "HTTP/1.1 200 OK\r\nContent-Length: 31\r\n\r\n", STALLS },
 	{ "/ill", "HTTP/1.1 503 Ill\r\nContent-Length: 4\r\n\r\nill!", ENDS },
 	{ "/round", "HTTP/1.1 302 Found\r\nLocation: /round\r\nContent-Length: 0\r\n\r\n", ENDS },
 	{ "/to-a-file",
@@ -57,7 +62,7 @@ static const struct script {
 	  ENDS },
 	{ "/rubbish", "I am no web server\r\n\r\n", ENDS },
 	{ "/stall", "HTTP/1.1 200 OK\r\nContent-Length: 26\r\n\r\nabc", STALLS },
-	{ "/trickle", "HTTP/1.1 200 OK\r\nContent-Length: 9999\r\n\r\nabc", TRICKLES },
+	{ "/trickle", "HTTP/1.1 200 OK\r\nContent-Length: 30\r\n\r\nabc", TRICKLES },
 };
 
 static struct {
@@ -346,6 +351,17 @@ static void refuses_a_file_past_the_ceiling(void **state)
 	rmdir(folder);
 }
 
+/* The server then sends nothing more, so only the header can tell. */
+static void refuses_a_file_that_is_announced_past_the_ceiling(void **state)
+{
+	struct outcome outcome = fetch("announced", 0, 0);
+
+	(void)state;
+	CHECK(outcome.rc == -EBADMSG && outcome.size == 0);
+	CHECK(strstr(outcome.why, "too large"));
+	CHECK(fetch("absent-at-length", 0, 0).rc == -ENOENT); /* its page is not the file */
+}
+
 static void knows_a_bad_answer_from_no_answer(void **state)
 {
 	static const struct {
@@ -512,6 +528,7 @@ int main(void)
 		cmocka_unit_test(refuses_another_range_than_it_asked_for),
 		cmocka_unit_test(takes_no_byte_past_what_it_asked_for),
 		cmocka_unit_test(refuses_a_file_past_the_ceiling),
+		cmocka_unit_test(refuses_a_file_that_is_announced_past_the_ceiling),
 		cmocka_unit_test(knows_a_bad_answer_from_no_answer),
 		cmocka_unit_test(follows_redirections_to_the_server_itself),
 		cmocka_unit_test(follows_no_redirection_elsewhere),

@@ -291,6 +291,7 @@ static const char *const settings[][2] = {
 	{ "release", "url" },
 	{ "release", "trust" },
 	{ "release", "ca" },
+	{ "release", "target" },
 	{ "release", "poll_s" },
 	{ "release", "download" },
 	{ "release", "rate_limit_kib" },

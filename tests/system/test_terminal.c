@@ -48,7 +48,7 @@ static void takes_every_value(void **state)
 	(void)state;
 	parse("[terminal]\nname = East gate\nlanguage = pt-BR\ntime_zone = Europe/Berlin\n"
 	      "board = weak-arm\n" RELEASE
-	      "ca = ca.pem\npoll_s = 600\ndownload = 22:00-06:00\nrate_limit_kib = 500\n"
+	      "ca = ca.pem\ntarget = angkor/release.json\npoll_s = 600\ndownload = 22:00-06:00\nrate_limit_kib = 500\n"
 	      "[panel]\nmode = 3840x2160@59.94\nrotation = 270\nhours = Mo-Fr 09:00-18:00\n"
 	      "wake_min = 0\nshift = no\n"
 	      "[network]\naddress = 192.168.1.20/24\ngateway = 192.168.1.1\n"
@@ -63,6 +63,7 @@ static void takes_every_value(void **state)
 	CHECK(strcmp(terminal.board, "weak-arm") == 0);
 	CHECK(strcmp(terminal.release_url, "https://museum.example/temple/") == 0);
 	CHECK(strcmp(terminal.trust, "1.json") == 0 && strcmp(terminal.ca, "ca.pem") == 0);
+	CHECK(strcmp(terminal.target, "angkor/release.json") == 0);
 	CHECK(terminal.wait_ms == 2000);
 	CHECK(terminal.poll_s == 600 && terminal.rate_limit_kib == 500);
 	CHECK(terminal.download.from_min == 22 * 60);
@@ -133,6 +134,10 @@ static void refuses_each_wrong_value_by_its_line_and_says_the_cure(void **state)
 		{ "release", "ca = keys/ca.pem", "without folders" },
 		{ "release", "ca = ..", "without folders" },
 		{ "release", "ca = -x", "without folders" },
+		{ "release", "target = /release.json", "such as angkor/release.json" },
+		{ "release", "target = a/../release.json", "such as angkor/release.json" },
+		{ "release", "target = a//release.json", "such as angkor/release.json" },
+		{ "release", "target = a b", "such as angkor/release.json" },
 		{ "release", "poll_s = 5", "60 to 86400" },
 		{ "release", "poll_s = 90000", "60 to 86400" },
 		{ "release", "poll_s = 60.5", "60 to 86400" },

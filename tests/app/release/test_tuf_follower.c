@@ -25,7 +25,7 @@ static int set_up(void **unused)
 	known[0] = known[1] = (struct bytes){ NULL, 0 };
 	publish_root(1);
 	publish(1);
-	CHECK(tuf_follower_init(&follower, &none) == 0 && !tuf_follower_is_on(&follower));
+	CHECK(tuf_follower_init(&follower, &none, NULL) == 0 && !tuf_follower_is_on(&follower));
 	CHECK(tuf_follower_pin(&follower, file_of("1.root.json"), NULL) == 0);
 	CHECK(tuf_follower_is_on(&follower) && follower.version[TUF_ROOT] == 1 && follower.changed);
 	return 0;
@@ -91,7 +91,7 @@ static void start_again(void)
 	struct tuf_follower old = follower;
 	const struct state_tuf kept = tuf_follower_kept(&old);
 
-	CHECK(tuf_follower_init(&follower, &kept) == 0);
+	CHECK(tuf_follower_init(&follower, &kept, NULL) == 0);
 	tuf_follower_finish(&old);
 	CHECK(!follower.changed && tuf_follower_is_on(&follower));
 }
@@ -110,6 +110,32 @@ static void asks_for_one_file_after_another(void **unused)
 	CHECK(has_asked("2.root.json 1.snapshot.jso 1.targets.json targets/"));
 	CHECK(tuf_follower_kept(&follower).targets.size == file_of("1.targets.json").size);
 	CHECK(follower.expires_s[TUF_TARGETS] == LATER_S);
+}
+
+/* One server may have several temples. */
+static void follows_its_own_path_alone(void **unused)
+{
+	char path[TUF_FOLLOWER_TARGET_BYTES + 1];
+	struct state_tuf kept = tuf_follower_kept(&follower);
+	struct tuf_follower other;
+
+	(void)unused;
+	CHECK(tuf_follower_init(&other, &kept, "angkor/release.json") == 0);
+	tuf_follower_finish(&follower);
+	follower = other;
+	CHECK(look(NOW_S) == -ENOENT && strstr(follower.why, "no target angkor/release.json"));
+	target_folder = "angkor/";
+	publish(2);
+	CHECK(look(NOW_S) == 0 && strstr(asked, "targets/angkor"));
+	target_folder = "bayon/";
+	publish(3);
+	CHECK(look(NOW_S) == -ENOENT);
+	target_folder = "";
+	memset(path, 'a', sizeof(path));
+	path[sizeof(path) - 1] = '\0';
+	kept = tuf_follower_kept(&follower);
+	CHECK(tuf_follower_init(&other, &kept, path) == -ENAMETOOLONG);
+	tuf_follower_finish(&other);
 }
 
 static void asks_for_what_is_new_alone(void **unused)
@@ -235,7 +261,7 @@ static void only_the_earlier_root_keys_name_a_first_root(void **unused)
 
 	(void)unused;
 	tuf_follower_finish(&follower);
-	CHECK(tuf_follower_init(&follower, &none) == 0);
+	CHECK(tuf_follower_init(&follower, &none, NULL) == 0);
 	CHECK(tuf_follower_pin(&follower, file_of("1.root.json"), &root) == -EKEYREJECTED);
 	CHECK(strstr(follower.why, "not signed by the root keys"));
 	root = earlier_root(&root_key, 2);
@@ -255,7 +281,7 @@ static void looks_for_its_first_root_among_all_versions(void **unused)
 
 	(void)unused;
 	tuf_follower_finish(&follower);
-	CHECK(tuf_follower_init(&follower, &none) == 0);
+	CHECK(tuf_follower_init(&follower, &none, NULL) == 0);
 	CHECK(!tuf_follower_begin_first(&follower, 0, META_FROM_SERVER));
 	answer = answer_to("1.root.json");
 	CHECK(tuf_follower_first(&follower, &answer, &root) == -ENOKEY); /* not asked for */
@@ -341,7 +367,7 @@ static void lives_through_each_allocation_that_fails(void **unused)
 		int rc;
 
 		tuf_follower_finish(&follower);
-		CHECK(tuf_follower_init(&follower, &none) == 0);
+		CHECK(tuf_follower_init(&follower, &none, NULL) == 0);
 		cJSON_InitHooks(&hooks);
 		allocations_left = n;
 		rc = tuf_follower_pin(&follower, file_of("1.root.json"), &root);
@@ -391,6 +417,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		IN_A_MUSEUM(asks_for_one_file_after_another),
+		IN_A_MUSEUM(follows_its_own_path_alone),
 		IN_A_MUSEUM(asks_for_what_is_new_alone),
 		IN_A_MUSEUM(a_round_that_waits_for_a_file_goes_on_with_the_same_timestamp),
 		IN_A_MUSEUM(refuses_what_is_older_after_a_start_too),

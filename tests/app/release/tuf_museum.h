@@ -25,6 +25,7 @@ static struct {
 	struct buffer bytes;
 } files[FILES_MAX];
 static int file_count;
+static const char *target_folder = ""; /* of the release, among the targets: "angkor/" */
 static int64_t expires_s = LATER_S, issued_s;
 static struct buffer release_file; /* the release.json that was published last */
 
@@ -121,8 +122,9 @@ static inline void publish(uint32_t n)
 
 	buffer_clear(&release_file);
 	CHECK(release_encode(&release_file, &release, &release_key, 1) == 0);
-	entry = tuf_add_file(all, "release.json", 0, buffer_bytes(&release_file));
-	snprintf(name, sizeof(name), "targets/%s.release.json",
+	snprintf(name, sizeof(name), "%srelease.json", target_folder);
+	entry = tuf_add_file(all, name, 0, buffer_bytes(&release_file));
+	snprintf(name, sizeof(name), "targets/%s%s.release.json", target_folder,
 		 cJSON_GetObjectItem(cJSON_GetObjectItem(entry, "hashes"), "sha256")->valuestring);
 	put(name, buffer_bytes(&release_file));
 	snprintf(name, sizeof(name), "%u.targets.json", n);
