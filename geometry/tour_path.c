@@ -15,7 +15,7 @@
 #define KNOT_MIN        1e-3f /* for two equal poses */
 #define CLEARANCE_M     0.175f
 #define CLEARANCE_SHARE 0.01f
-#define MS              1000.0f
+#define MS              1000.0
 
 float tour_path_clearance_m(float diagonal_m)
 {
@@ -106,6 +106,11 @@ static void mirror(float out[TOUR_AXES], const float end[TOUR_AXES], const float
 		out[i] = 2 * end[i] - other[i];
 }
 
+static bool is_even(const struct tour_view *stops, uint32_t leg, uint32_t count)
+{
+	return stops[(leg + 1) % count].is_even;
+}
+
 static void set_leg(struct tour_path *path, const struct tour_view *stops, uint32_t leg,
 		    bool closed)
 {
@@ -118,9 +123,10 @@ static void set_leg(struct tour_path *path, const struct tour_view *stops, uint3
 	turn_from(own->poses[2], own->poses[1], path->metres_a_radian);
 	turn_from(own->poses[3], own->poses[2], path->metres_a_radian);
 	turn_from(own->poses[0], own->poses[1], path->metres_a_radian);
-	if (!closed && leg == 0)
+	/* Four poses in even steps on a line: the curve is that line, at one speed. */
+	if ((!closed && leg == 0) || is_even(stops, leg, count))
 		mirror(own->poses[0], own->poses[1], own->poses[2]);
-	if (!closed && leg + 1 == path->leg_count)
+	if ((!closed && leg + 1 == path->leg_count) || is_even(stops, leg, count))
 		mirror(own->poses[3], own->poses[2], own->poses[1]);
 	set_knots(own);
 	measure(own);
@@ -136,30 +142,35 @@ static float travel_s(const struct tour_path *path, const struct tour_view *stop
 
 static void set_runs(struct tour_path *path, const struct tour_view *stops, float diagonal_m)
 {
+	const uint32_t count = path->stop_count;
 	struct tour_run *run = NULL;
-	int64_t now_ms = 0;
+	double now_s = 0; /* when the run begins; its milliseconds are rounded, not added up */
+	double end_s = 0;
 	float move_s = 0;
 	bool told = false;
 
 	for (uint32_t leg = 0; leg < path->leg_count; leg++) {
-		if (leg == 0 || stops[leg].stay_s > 0) {
+		const bool even = is_even(stops, leg, count);
+
+		if (leg == 0 || stops[leg].stay_s > 0 || even || run->is_even) {
+			now_s = end_s + (double)stops[leg].stay_s;
 			run = &path->runs[path->run_count++];
-			now_ms += (int64_t)(stops[leg].stay_s * MS);
-			*run = (struct tour_run){ .first_leg = leg, .begin_ms = now_ms };
+			*run = (struct tour_run){ .first_leg = leg,
+						  .is_even = even,
+						  .begin_ms = llround(now_s * MS) };
 			move_s = 0;
 			told = false;
 		}
 		run->leg_count++;
 		run->length_m += path->legs[leg].to_m[TOUR_PIECES];
 		move_s += travel_s(path, stops, leg, diagonal_m);
-		told |= stops[(leg + 1) % path->stop_count].travel_s > 0;
-		run->move_ms = (int64_t)((told ? move_s : fmaxf(move_s, TRAVEL_LEAST_S)) * MS);
-		path->duration_ms = run->begin_ms + run->move_ms;
-		if (stops[(leg + 1) % path->stop_count].stay_s > 0)
-			now_ms = path->duration_ms;
+		told |= stops[(leg + 1) % count].travel_s > 0;
+		end_s = now_s + (double)(told ? move_s : fmaxf(move_s, TRAVEL_LEAST_S));
+		run->move_ms = llround(end_s * MS) - run->begin_ms;
 	}
-	if (path->leg_count < path->stop_count) /* it ends after the last stay, not on arrival */
-		path->duration_ms += (int64_t)(stops[path->stop_count - 1].stay_s * MS);
+	if (path->leg_count < count) /* it ends after the last stay, not on arrival */
+		end_s += (double)stops[count - 1].stay_s;
+	path->duration_ms = llround(end_s * MS);
 }
 
 void tour_path_init(struct tour_path *path, const struct tour_view *stops, uint32_t count,
@@ -231,7 +242,8 @@ void tour_path_pose(const struct tour_path *path, int64_t ms, struct tour_pose *
 	const float part = since >= run->move_ms ? 1
 			   : since > 0           ? (float)since / (float)run->move_ms
 						 : 0;
-	float way_m = run->length_m * (part * part * (3 - 2 * part)), pose[TOUR_AXES];
+	const float share = run->is_even ? part : part * part * (3 - 2 * part);
+	float way_m = run->length_m * share, pose[TOUR_AXES];
 	uint32_t leg = run->first_leg;
 	const uint32_t last = run->first_leg + run->leg_count - 1;
 

@@ -6,7 +6,11 @@
  * which has no cusps or loops between two of them; its tangent at a stop follows from the
  * neighbouring stops. The part between two stops where the camera stays is flown in one go,
  * parametrised by its length. It starts and ends slowly, and does not halt at stops that are only
- * passed. Pure functions on a plain value. */
+ * passed.
+ *
+ * A leg that is even is flown as interpolators of scenes move a camera (VRML97 6.36): on a straight
+ * line between the two poses, at one speed, in exactly its time. Pure functions on a plain value.
+ */
 #ifndef GOPURA_GEOMETRY_TOUR_PATH_H
 #define GOPURA_GEOMETRY_TOUR_PATH_H
 
@@ -24,6 +28,7 @@ struct tour_view {
 	/* seconds at the stop; 0: passed without a halt. The first and the last stop stay */
 	float stay_s;
 	float travel_s; /* seconds of the leg to it; 0: follows from its length */
+	bool is_even;   /* the leg to it is; travel_s is above 0 */
 };
 
 /* The curve from one stop to the next. */
@@ -33,9 +38,10 @@ struct tour_leg {
 	float to_m[TOUR_PIECES + 1]; /* length of the curve up to the end of each piece */
 };
 
-/* Consecutive legs without a halt between them. */
+/* Consecutive legs without a halt between them, or one that is even. */
 struct tour_run {
 	uint32_t first_leg, leg_count;
+	bool is_even;
 	float length_m;
 	int64_t begin_ms, move_ms;
 };

@@ -55,7 +55,7 @@ struct info {
 	uint32_t tour_count, tour_room;
 	unsigned tools;
 	float scan_error_m;
-	bool has_tools, has_spoken;
+	bool has_tools, has_spoken, has_even_legs;
 	struct info_spoken spoken; /* what info_spoken found last, of spoken_of; bytes 0: nothing */
 	int64_t spoken_of;         /* a content_id */
 	struct info_cue *cues;     /* of spoken; owned */

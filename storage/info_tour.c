@@ -107,6 +107,43 @@ static int read_stop_text(struct info *info, sqlite3_stmt *row)
 	return info_copy_text(row, 3, &info->tours[id].stop_captions[stop][language]);
 }
 
+static int note_even_legs(struct info *info, sqlite3_stmt *row)
+{
+	(void)row;
+	info->has_even_legs = true;
+	return 0;
+}
+
+static int read_even_leg(struct info *info, sqlite3_stmt *row)
+{
+	const uint32_t id = column_index(row, 0, info->tour_count);
+	struct info_tour *tour;
+	uint32_t stop;
+
+	if (id == info->tour_count)
+		return -EBADMSG;
+	tour = &info->tours[id].public;
+	stop = column_index(row, 1, tour->stop_count);
+	if (stop == tour->stop_count || !(tour->stops[stop].travel_s > 0))
+		return -EBADMSG;
+	tour->stops[stop].is_even = true;
+	return 0;
+}
+
+/* The table exists only if there are such legs. Programs that do not know it fly a curve through
+ * the same stops in the same time, and the schema version stays the same for them. */
+static int read_even_legs(struct info *info)
+{
+	int rc = info_each_row(info,
+			       "SELECT 1 FROM sqlite_schema WHERE type = 'table'"
+			       " AND name = 'tour_even'",
+			       note_even_legs);
+
+	if (rc == 0 && info->has_even_legs)
+		rc = info_each_row(info, "SELECT tour_id, position FROM tour_even", read_even_leg);
+	return rc;
+}
+
 int info_load_tours(struct info *info)
 {
 	static const struct {
@@ -128,6 +165,8 @@ int info_load_tours(struct info *info)
 
 	for (size_t i = 0; i < ARRAY_COUNT(steps) && rc == 0; i++)
 		rc = info_each_row(info, steps[i].sql, steps[i].read);
+	if (rc == 0)
+		rc = read_even_legs(info);
 	for (uint32_t i = 0; i < info->tour_count && rc == 0; i++) {
 		const struct info_tour *tour = &info->tours[i].public;
 

@@ -9,6 +9,8 @@ struct info_stop {
 	float stay_s,
 		travel_s; /* stay 0: the tour passes without a stop; travel 0: chosen by distance */
 	int part;         /* the part to highlight, or -1 */
+	/* The way to it is a straight line at one speed, in travel_s, which is above 0. */
+	bool is_even;
 };
 
 struct info_tour {

@@ -19,6 +19,7 @@ void tour_way(struct tour_path *out, const struct info_tour *of, float diagonal_
 
 		views[i].stay_s = stop->stay_s;
 		views[i].travel_s = stop->travel_s;
+		views[i].is_even = stop->is_even;
 		memcpy(views[i].eye_m, stop->eye_m, sizeof(views[i].eye_m));
 		memcpy(views[i].target_m, stop->target_m, sizeof(views[i].target_m));
 	}

@@ -74,7 +74,9 @@ static void add_path(cJSON *json, const struct site *site, const struct info_tou
 	for (uint32_t n = 0; n < tour->stop_count; n++) {
 		const struct info_stop *stop = &tour->stops[n];
 
-		views[n] = (struct tour_view){ .stay_s = stop->stay_s, .travel_s = stop->travel_s };
+		views[n] = (struct tour_view){ .stay_s = stop->stay_s,
+					       .travel_s = stop->travel_s,
+					       .is_even = stop->is_even };
 		memcpy(views[n].eye_m, stop->eye_m, sizeof(views[n].eye_m));
 		memcpy(views[n].target_m, stop->target_m, sizeof(views[n].target_m));
 	}

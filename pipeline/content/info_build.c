@@ -305,6 +305,28 @@ static void write_tour(struct writer *w, int64_t id, const struct draft_tour *to
 		write_stop(w, id, i, &tour->stops[i]);
 }
 
+/* Legs as interpolators fly them. Without any there is no table of them (storage/info_tour.c). */
+static void write_even_legs(struct writer *w, const struct draft *draft)
+{
+	bool has_table = false;
+
+	for (uint32_t t = 0; t < draft->tour_count; t++)
+		for (uint32_t i = 0; i < draft->tours[t].stop_count; i++) {
+			if (!draft->tours[t].stops[i].view.is_even)
+				continue;
+			if (!has_table)
+				run(w, "CREATE TABLE tour_even(tour_id INTEGER NOT NULL,"
+				       " position INTEGER NOT NULL, PRIMARY KEY(tour_id, position),"
+				       " FOREIGN KEY(tour_id, position) REFERENCES tour_stop)"
+				       " WITHOUT ROWID");
+			has_table = true;
+			prepare(w, "INSERT INTO tour_even VALUES(?,?)");
+			bind_int(w, t);
+			bind_int(w, i);
+			insert(w);
+		}
+}
+
 static void write_tools(struct writer *w, unsigned tools, double scan_error_m)
 {
 	if (tools)
@@ -387,6 +409,7 @@ static void write_database(struct writer *w, const struct draft *draft)
 	}
 	for (uint32_t i = 0; i < draft->tour_count; i++)
 		write_tour(w, i, &draft->tours[i]);
+	write_even_legs(w, draft);
 	write_tools(w, draft->options->tools, draft->options->scan_error_m);
 	write_spoken(w, draft);
 	if (w->code == SQLITE_OK)

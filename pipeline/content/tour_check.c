@@ -17,7 +17,7 @@
 #include "storage/info_tour.h"
 
 /* Raise VERSION when the check refuses what it let pass before. */
-enum { VERSION = 1, LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100, KEY_TEXT_MAX = 1 << 20 };
+enum { VERSION = 2, LEAF = 8, STEPS_MAX = 1 << 20, LOOK_MS = 100, KEY_TEXT_MAX = 1 << 20 };
 
 #define STEP_SHARE    0.25f /* of the clearance */
 #define THROUGH_SHARE 0.2f  /* nearer than this share of the clearance counts as through */
@@ -329,6 +329,7 @@ static int judge_tour(struct way *way)
 
 		views[i].stay_s = stop->stay_s;
 		views[i].travel_s = stop->travel_s;
+		views[i].is_even = stop->is_even;
 		memcpy(views[i].eye_m, stop->eye_m, sizeof(views[i].eye_m));
 		memcpy(views[i].target_m, stop->target_m, sizeof(views[i].target_m));
 	}
@@ -376,6 +377,7 @@ int tour_check_key(struct hash *out, const struct info_built *built, struct hash
 			}
 			buffer_put_f32(&text, stop->stay_s);
 			buffer_put_f32(&text, stop->travel_s);
+			buffer_put_u8(&text, stop->is_even);
 		}
 	}
 	rc = text.error;

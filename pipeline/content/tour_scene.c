@@ -63,7 +63,7 @@ static void add_view(struct draft_tour *tour, const struct import_views *views, 
 	const float since_s = before && views->is_way ? view->time_s - before->time_s : 0;
 	struct draft_stop *stop;
 
-	if (since_s > 0 && is_same(view, before)) {
+	if (views->is_way && before && is_same(view, before)) {
 		tour->stops[tour->stop_count - 1].view.stay_s += since_s;
 		return;
 	}
@@ -75,6 +75,7 @@ static void add_view(struct draft_tour *tour, const struct import_views *views, 
 	stop->view.part = -1;
 	stop->view.stay_s = views->is_way ? 0 : STILL_STAY_S;
 	stop->view.travel_s = since_s;
+	stop->view.is_even = since_s > 0;
 }
 
 static int make_stops(struct draft *draft, struct draft_tour *tour,

@@ -14,6 +14,9 @@
 #include "pipeline/scene/vrml_graph.h"
 #include "pipeline/scene/vrml_motions.h"
 
+/* The keys of both interpolators, and the two ends. */
+enum { WAY_VIEWS_MAX = 2 * VRML_VIEW_KEYS_MAX + 2 };
+
 /* A Viewpoint, where the Transforms above it put it, and what moves it; NULL: nothing does. */
 struct camera {
 	const struct vrml_node *node, *position, *orientation;
@@ -186,8 +189,7 @@ static void own_turn(float out[4], const struct vrml_node *node)
 
 static int add_view(struct vrml_views *out, const struct vrml_view *view)
 {
-	int rc = ARRAY_RESERVE(out->items, out->room, (uint64_t)out->count + 1,
-			       2 * VRML_VIEW_KEYS_MAX);
+	int rc = ARRAY_RESERVE(out->items, out->room, (uint64_t)out->count + 1, WAY_VIEWS_MAX);
 
 	if (rc == 0)
 		out->items[out->count++] = *view;
@@ -216,12 +218,21 @@ struct keys {
 	const struct vrml_value *times, *values; /* NULL: it stays */
 };
 
-/* Returns the key before a time, and how far between it and the next the time is. */
-static uint32_t find_key(const struct vrml_value *times, float time, float *share)
+/* A moment of a way. Where two keys have one time the value jumps there, and the moment just before
+ * is another one. */
+struct moment {
+	float time; /* share of the way, 0 to 1 */
+	bool is_before;
+};
+
+/* Returns the key before a moment, and how far between it and the next the moment is. */
+static uint32_t find_key(const struct vrml_value *times, struct moment moment, float *share)
 {
+	const float time = moment.time;
 	uint32_t at = 0;
 
-	while (at + 1 < times->count && times->floats[at + 1] <= time)
+	while (at + 1 < times->count &&
+	       (moment.is_before ? times->floats[at + 1] < time : times->floats[at + 1] <= time))
 		at++;
 	*share = 0;
 	if (at + 1 < times->count && time > times->floats[at])
@@ -229,10 +240,10 @@ static uint32_t find_key(const struct vrml_value *times, float time, float *shar
 	return at;
 }
 
-static void position_at(float out[3], const struct keys *keys, float time)
+static void position_at(float out[3], const struct keys *keys, struct moment moment)
 {
 	float share;
-	const uint32_t at = find_key(keys->times, time, &share);
+	const uint32_t at = find_key(keys->times, moment, &share);
 	const float *from = &keys->values->floats[3 * at], *to = share > 0 ? from + 3 : from;
 
 	for (int k = 0; k < 3; k++)
@@ -240,10 +251,10 @@ static void position_at(float out[3], const struct keys *keys, float time)
 }
 
 /* The shorter way round, at an even speed. */
-static void turn_at(float out[4], const struct keys *keys, float time)
+static void turn_at(float out[4], const struct keys *keys, struct moment moment)
 {
 	float share, a[4], b[4], dot = 0, angle, weights[2];
-	const uint32_t at = find_key(keys->times, time, &share);
+	const uint32_t at = find_key(keys->times, moment, &share);
 	const float *from = &keys->values->floats[4 * at], *to = share > 0 ? from + 4 : from;
 
 	scenery_turn(a, from, from[3]);
@@ -259,23 +270,32 @@ static void turn_at(float out[4], const struct keys *keys, float time)
 
 static int by_time(const void *a, const void *b)
 {
-	const float x = *(const float *)a, y = *(const float *)b;
+	const struct moment *x = a, *y = b;
 
-	return (x > y) - (x < y);
+	if (x->time != y->time)
+		return x->time > y->time ? 1 : -1;
+	return y->is_before - x->is_before;
 }
 
-/* Writes the times of all keys, each once, and returns how many. */
-static uint32_t gather_times(float *out, const struct keys *position, const struct keys *turn)
+/* Writes the moments of all keys, each once, and both ends; returns how many. */
+static uint32_t gather_moments(struct moment out[WAY_VIEWS_MAX], const struct keys *position,
+			       const struct keys *turn)
 {
 	const struct vrml_value *lists[] = { position->times, turn->times };
 	uint32_t count = 0, kept = 0;
 
+	out[count++] = (struct moment){ .time = 0 };
+	out[count++] = (struct moment){ .time = 1 };
 	for (size_t l = 0; l < ARRAY_COUNT(lists); l++)
-		for (uint32_t i = 0; lists[l] && i < lists[l]->count; i++)
-			out[count++] = lists[l]->floats[i];
+		for (uint32_t i = 0; lists[l] && i < lists[l]->count; i++) {
+			const float *key = &lists[l]->floats[i];
+			const bool jumps = i + 1 < lists[l]->count && key[1] == key[0];
+
+			out[count++] = (struct moment){ .time = *key, .is_before = jumps };
+		}
 	qsort(out, count, sizeof(*out), by_time);
 	for (uint32_t i = 0; i < count; i++)
-		if (kept == 0 || out[i] > out[kept - 1])
+		if (kept == 0 || by_time(&out[i], &out[kept - 1]) > 0)
 			out[kept++] = out[i];
 	return kept;
 }
@@ -342,7 +362,8 @@ static int get_duration(const struct search *search, const struct camera *camera
 
 static int add_way(struct vrml_views *out, const struct search *search, const struct camera *camera)
 {
-	float times[2 * VRML_VIEW_KEYS_MAX], seconds = 0;
+	struct moment moments[WAY_VIEWS_MAX];
+	float seconds = 0;
 	struct keys position, turn;
 	uint32_t count;
 	int rc;
@@ -359,17 +380,17 @@ static int add_way(struct vrml_views *out, const struct search *search, const st
 	if (rc < 0)
 		return rc;
 	out->moves = true;
-	count = gather_times(times, &position, &turn);
+	count = gather_moments(moments, &position, &turn);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
-		struct vrml_view view = { .time_s = times[i] * seconds };
+		struct vrml_view view = { .time_s = moments[i].time * seconds };
 		float at[3], quaternion[4];
 
 		own_position(at, camera->node);
 		own_turn(quaternion, camera->node);
 		if (position.times)
-			position_at(at, &position, times[i]);
+			position_at(at, &position, moments[i]);
 		if (turn.times)
-			turn_at(quaternion, &turn, times[i]);
+			turn_at(quaternion, &turn, moments[i]);
 		place_view(&view, camera->place, at, quaternion);
 		rc = add_view(out, &view);
 	}

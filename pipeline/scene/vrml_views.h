@@ -10,14 +10,16 @@ enum { VRML_VIEWPOINTS_MAX = 256, VRML_VIEW_KEYS_MAX = 1024 };
 
 struct vrml_view {
 	float eye[3], target[3]; /* in the file's axes and unit */
-	float time_s;            /* of a moving Viewpoint: since its way began; ascends */
+	/* Of a moving Viewpoint: since its way began. Ascends; where the Viewpoint jumps, the
+	 * views before and after have one time. */
+	float time_s;
 };
 
 /* Zeroed is empty. */
 struct vrml_views {
 	struct vrml_view *items; /* owned */
 	uint32_t count, room;
-	bool moves; /* they are one Viewpoint at the times of its keys */
+	bool moves; /* they are one Viewpoint at the times of its keys, and at both ends */
 };
 
 /* Gets the way of the moving Viewpoint with that description (ISO/IEC 14772-1 6.53). With NULL: of

@@ -10,10 +10,10 @@
 #include "tests/check.h"
 
 static const struct tour_view four[] = {
-	{ { 30, -40, 12 }, { 0, 0, 8 }, 5, 0 },
-	{ { 35, 0, 9 }, { 18, 0, 5 }, 0, 0 },
-	{ { 22, 1, 5 }, { 18, 0, 5 }, 4, 6 },
-	{ { 22, -18, 6 }, { 9, -14, 4 }, 3, 0 },
+	{ { 30, -40, 12 }, { 0, 0, 8 }, 5, 0, false },
+	{ { 35, 0, 9 }, { 18, 0, 5 }, 0, 0, false },
+	{ { 22, 1, 5 }, { 18, 0, 5 }, 4, 6, false },
+	{ { 22, -18, 6 }, { 9, -14, 4 }, 3, 0, false },
 };
 static const float diagonal_m = 60;
 
@@ -115,6 +115,7 @@ static void never_jumps_and_never_goes_back(void **state)
 			}
 			stops[i].stay_s = i == 0 || i == count - 1 || rand() % 2 ? 2 : 0;
 			stops[i].travel_s = 0;
+			stops[i].is_even = false;
 		}
 		tour_path_init(&path, stops, count, closed, diagonal_m);
 		tour_path_pose(&path, 0, &before);
@@ -153,8 +154,8 @@ static void a_closed_way_begins_where_it_ends(void **state)
 static void turns_on_the_spot(void **state)
 {
 	static const struct tour_view spot[] = {
-		{ { 5, 5, 5 }, { 4, 5.2f, 5 }, 1, 0 },
-		{ { 5, 5, 5 }, { 4, 4.8f, 5 }, 1, 0 }, /* across the turn of the angle */
+		{ { 5, 5, 5 }, { 4, 5.2f, 5 }, 1, 0, false },
+		{ { 5, 5, 5 }, { 4, 4.8f, 5 }, 1, 0, false }, /* across the turn of the angle */
 	};
 	static struct tour_path path;
 	struct tour_pose pose;
@@ -167,6 +168,51 @@ static void turns_on_the_spot(void **state)
 		CHECK(pose.target_m[0] < 4.1f);
 	}
 	CHECK(looks_off(&pose, &spot[1]) < 2e-3f);
+}
+
+/* Legs of 3, 0.5 and 7 seconds on straight lines, then one without a time, which is flown as ever.
+ */
+static void even_legs_keep_their_times(void **state)
+{
+	static const struct tour_view stops[] = {
+		{ { 0, 0, 5 }, { 0, 9, 5 }, 2, 0, false },
+		{ { 30, 0, 5 }, { 30, 9, 5 }, 0, 3, true },
+		{ { 30, 4, 5 }, { 30, 13, 5 }, 1.5f, 0.5f, true },
+		{ { 30, 4, 12 }, { 39, 4, 12 }, 0, 7, true },
+		{ { 20, 4, 12 }, { 29, 4, 12 }, 1, 0, false },
+	};
+	/* When each leg begins. */
+	static const int64_t begins_ms[] = { 2000, 5000, 7000, 14000 };
+	static struct tour_path path;
+	struct tour_pose pose, before;
+
+	(void)state;
+	tour_path_init(&path, stops, 5, false, diagonal_m);
+	CHECK(path.run_count == 4);
+	for (uint32_t leg = 0; leg < 3; leg++) {
+		const int64_t travel_ms = llroundf(stops[leg + 1].travel_s * 1000);
+
+		CHECK(path.runs[leg].begin_ms == begins_ms[leg] &&
+		      path.runs[leg].move_ms == travel_ms);
+		for (int64_t ms = 0; ms <= travel_ms; ms += 10) {
+			float expected[3];
+
+			vec_sub(expected, stops[leg + 1].eye_m, stops[leg].eye_m);
+			vec_add_scaled(expected, stops[leg].eye_m, (float)ms / (float)travel_ms,
+				       expected);
+			tour_path_pose(&path, begins_ms[leg] + ms, &pose);
+			CHECK(between(pose.eye_m, expected) < 1e-3f);
+			CHECK(pose.moves || ms == travel_ms);
+		}
+	}
+	/* A quarter turn in 7 seconds is even too. */
+	tour_path_pose(&path, 7000, &before);
+	tour_path_pose(&path, 7000 + 1400, &pose);
+	CHECK(fabsf(angle(&before, &pose) - (float)M_PI / 10) < 2e-3f);
+	CHECK(path.runs[3].begin_ms == 14000 &&
+	      llabs(path.runs[3].move_ms - (int64_t)(tour_path_leg_m(&path, 3) / 3 * 1000)) <= 1);
+	tour_path_pose(&path, 14000 + 333, &pose);
+	CHECK(between(pose.eye_m, stops[3].eye_m) < 0.4f); /* it begins slowly */
 }
 
 static void tells_how_long_it_rests(void **state)
@@ -198,6 +244,7 @@ int main(void)
 		cmocka_unit_test(never_jumps_and_never_goes_back),
 		cmocka_unit_test(a_closed_way_begins_where_it_ends),
 		cmocka_unit_test(turns_on_the_spot),
+		cmocka_unit_test(even_legs_keep_their_times),
 		cmocka_unit_test(tells_how_long_it_rests),
 	};
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <unistd.h>
 
+#include "app/visit/tour.h"
 #include "geometry/viewpoint.h"
 #include "storage/info_schema.h"
 #include "storage/info_tour.h"
@@ -188,6 +189,56 @@ static void a_scene_gives_the_stops_of_a_tour(void **state)
 	info_built_finish(&built);
 }
 
+/* What ISO/IEC 14772-1 6.36 says of a PositionInterpolator, along the x and y of a file. */
+static void interpolate(float out[2], const float *keys, const float (*values)[2], uint32_t count,
+			float share)
+{
+	uint32_t at = 0;
+	float part;
+
+	while (at + 2 < count && keys[at + 1] <= share)
+		at++;
+	part = (share - keys[at]) / (keys[at + 1] - keys[at]);
+	for (int k = 0; k < 2; k++)
+		out[k] = values[at][k] + part * (values[at + 1][k] - values[at][k]);
+}
+
+/* Keys at uneven times, a pause between two equal ones, and a timer that rests at its end. */
+static void a_tour_keeps_the_times_of_a_scenes_keys(void **state)
+{
+	static const float keys[] = { 0, 0.05f, 0.3f, 0.4f, 0.45f, 0.9f, 1 };
+	static const float values[][2] = { { 0, 0 }, { 5, 0 },  { 6, 3 }, { 6, 3 },
+					   { 9, 9 }, { 0, 12 }, { 0, 12 } };
+	static struct tour_path path;
+	struct info_built built;
+	struct info *info;
+
+	(void)state;
+	write_scenes();
+	write_text("scenes/walk.wrl",
+		   "#VRML V2.0 utf8\nDEF V Viewpoint {}\nDEF C TimeSensor { cycleInterval 20 }\n"
+		   "DEF P PositionInterpolator { key [ 0 0.05 0.3 0.4 0.45 0.9 ]\n"
+		   "  keyValue [ 0 0 0, 500 0 0, 600 300 0, 600 300 0, 900 900 0, 0 1200 0 ] }\n"
+		   "ROUTE C.fraction_changed TO P.set_fraction\n"
+		   "ROUTE P.value_changed TO V.position");
+	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/walk.wrl\""));
+	CHECK(build(&built) == 0);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	tour_way(&path, info_tour(info, 0), 30);
+	CHECK(path.duration_ms == 2000 + 20000);
+	for (int64_t ms = 0; ms <= 20000; ms += 50) {
+		struct tour_pose pose;
+		float expected[2];
+
+		interpolate(expected, keys, values, ARRAY_COUNT(keys), (float)ms / 20000);
+		tour_path_pose(&path, 2000 + ms, &pose);
+		CHECK(fabsf(pose.eye_m[0] - expected[0]) < 2e-3f);
+		CHECK(fabsf(pose.eye_m[2] - expected[1]) < 2e-3f);
+	}
+	info_close(info);
+	info_built_finish(&built);
+}
+
 static void faults_of_a_tour_through_a_scene_are_named(void **state)
 {
 	static const struct {
@@ -346,6 +397,7 @@ int main(void)
 		IN_A_FOLDER(a_folder_without_tours_gives_none),
 		IN_A_FOLDER(links_lead_to_tours_that_are_there),
 		IN_A_FOLDER(a_scene_gives_the_stops_of_a_tour),
+		IN_A_FOLDER(a_tour_keeps_the_times_of_a_scenes_keys),
 		IN_A_FOLDER(faults_of_a_tour_through_a_scene_are_named),
 		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
 		IN_A_FOLDER(a_damaged_image_breaks_nothing),

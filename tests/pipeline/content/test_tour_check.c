@@ -144,8 +144,8 @@ static void no_triangle_is_missed(void **state)
 	(void)state;
 	srand(11);
 	for (int trial = 0; trial < 60; trial++) {
-		struct tour_view views[2] = { { { 0 }, { 0, 0, 5 }, 6, 0 },
-					      { { 0 }, { 0, 0, 5 }, 6, 0 } };
+		struct tour_view views[2] = { { { 0 }, { 0, 0, 5 }, 6, 0, false },
+					      { { 0 }, { 0, 0, 5 }, 6, 0, false } };
 		float nearest = INFINITY, clearance, low[3], high[3];
 		char stops[300];
 		int rc;

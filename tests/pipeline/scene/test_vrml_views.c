@@ -78,6 +78,30 @@ static void a_moving_viewpoint_has_a_view_at_each_key(void **state)
 	vrml_views_finish(&views);
 }
 
+/* Two keys at one time are a jump: a view just before it, one after. The timer begins before the
+ * first key and ends after the last one. */
+static void a_jump_has_a_view_on_either_side(void **state)
+{
+	static const char text[] = HEAD
+		"DEF V Viewpoint {}\nDEF C TimeSensor { cycleInterval 10 }\n"
+		"DEF P PositionInterpolator { key [ 0.1 0.5 0.5 0.8 ]\n"
+		"  keyValue [ 0 0 0, 4 0 0, 4 9 0, 8 9 0 ] }\n"
+		"ROUTE C.fraction_changed TO P.set_fraction ROUTE P.value_changed TO V.position";
+	static const float expected[][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 5, 4, 0 },
+					     { 5, 4, 9 }, { 8, 8, 9 }, { 10, 8, 9 } };
+	struct diagnostics diagnostics = { 0 };
+	struct vrml_views views;
+
+	(void)state;
+	CHECK(read_views(&views, text, NULL, &diagnostics) == 0);
+	CHECK(views.count == ARRAY_COUNT(expected));
+	for (uint32_t i = 0; i < views.count; i++) {
+		CHECK(fabsf(views.items[i].time_s - expected[i][0]) < 1e-4f);
+		CHECK(is_at(views.items[i].eye, expected[i][1], expected[i][2], 0));
+	}
+	vrml_views_finish(&views);
+}
+
 static void of_several_the_description_says_which(void **state)
 {
 	static const char text[] = WALK
@@ -142,6 +166,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(viewpoints_that_stand_still_come_in_order),
 		cmocka_unit_test(a_moving_viewpoint_has_a_view_at_each_key),
+		cmocka_unit_test(a_jump_has_a_view_on_either_side),
 		cmocka_unit_test(of_several_the_description_says_which),
 		cmocka_unit_test(a_faulty_way_is_named_with_line_and_cure),
 	};
