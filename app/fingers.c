@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "base/clock.h"
+#include "base/log.h"
 
 #define SLOP_MM    3
 #define NEAR_MM    10
@@ -19,6 +20,40 @@ static void grab(struct fingers *fingers, float x_px, float y_px)
 {
 	tour_player_halt(fingers->env.tours);
 	eye_grab(fingers->env.eye, fingers->env.viewport, x_px, y_px);
+}
+
+/* ---- scenery that a finger drags */
+
+static void hold(struct fingers *fingers, float x_px, float y_px)
+{
+	struct scene *scene = fingers->env.shown->scene;
+
+	viewport_to_panel(fingers->env.viewport, &x_px, &y_px);
+	fingers->holds = scene && scene_grab(scene, &fingers->env.eye->camera, x_px, y_px);
+	if (fingers->holds)
+		log_debug("app", "the scenery is held");
+}
+
+static void pull(struct fingers *fingers, float x_px, float y_px)
+{
+	struct scene *scene = fingers->env.shown->scene;
+
+	viewport_to_panel(fingers->env.viewport, &x_px, &y_px);
+	if (scene)
+		scene_drag(scene, &fingers->env.eye->camera, x_px, y_px);
+}
+
+/* Returns whether something was held. */
+static bool let_go(struct fingers *fingers)
+{
+	const bool held = fingers->holds;
+
+	if (held && fingers->env.shown->scene)
+		scene_let_go(fingers->env.shown->scene);
+	if (held)
+		log_debug("app", "the scenery is let go");
+	fingers->holds = false;
+	return held;
 }
 
 /* ---- gestures */
@@ -101,12 +136,19 @@ static void on_model(struct fingers *fingers, const struct gesture *gesture)
 		grab(fingers, gesture->x_px, gesture->y_px);
 		if (overlay)
 			overlay_show_help(overlay, false);
+		if (gesture->kind == GESTURE_DRAG_BEGIN)
+			hold(fingers, gesture->x_px, gesture->y_px);
 		break;
 	case GESTURE_DRAG:
-		navigator_turn(&eye->navigator, gesture->dx_px, gesture->dy_px, height);
+		if (fingers->holds)
+			pull(fingers, gesture->x_px, gesture->y_px);
+		else
+			navigator_turn(&eye->navigator, gesture->dx_px, gesture->dy_px, height);
 		break;
 	case GESTURE_DRAG_END:
-		navigator_fling(&eye->navigator, gesture->vx_px_per_s, gesture->vy_px_per_s);
+		if (!let_go(fingers))
+			navigator_fling(&eye->navigator, gesture->vx_px_per_s,
+					gesture->vy_px_per_s);
 		eye_log(eye, "drag ends");
 		break;
 	case GESTURE_PINCH:
@@ -115,6 +157,9 @@ static void on_model(struct fingers *fingers, const struct gesture *gesture)
 		break;
 	case GESTURE_PINCH_END:
 		eye_log(eye, "pinch ends");
+		break;
+	case GESTURE_CANCEL:
+		let_go(fingers);
 		break;
 	default:
 		break;
@@ -154,6 +199,7 @@ void fingers_init(struct fingers *fingers, const struct fingers_env *env)
 void fingers_reset(struct fingers *fingers)
 {
 	gesture_reset(&fingers->gestures);
+	let_go(fingers);
 	fingers->on_keys = 0;
 }
 

@@ -26,6 +26,7 @@ struct fingers_env {
 struct fingers {
 	struct fingers_env env;
 	struct gesture_recogniser gestures;
+	bool holds;       /* the gesture drags scenery, such as a bolt, and not the eye */
 	bool on_words;    /* the gesture began on the overlay, such as a page or card */
 	uint32_t on_keys; /* bit mask of contacts */
 };

@@ -14,7 +14,9 @@ static const float longest_s = 3600;
 uint32_t scenery_width(enum scenery_target target)
 {
 	static const uint8_t widths[SCENERY_TARGETS] = {
-		[SCENERY_MOVE] = 3, [SCENERY_TURN] = 4, [SCENERY_SCALE] = 3, [SCENERY_OPACITY] = 1
+		[SCENERY_MOVE] = 3,    [SCENERY_TURN] = 4,   [SCENERY_SCALE] = 3,
+		[SCENERY_OPACITY] = 1, [SCENERY_COLOUR] = 3, [SCENERY_GLOW] = 3,
+		[SCENERY_SHAPE] = 1,
 	};
 
 	return widths[target];
@@ -27,6 +29,14 @@ uint32_t scenery_triangles(const struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
 		count += scenery->meshes[i].triangle_count;
 	return count;
+}
+
+bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_target target)
+{
+	for (uint32_t i = 0; i < scenery->track_count; i++)
+		if (scenery->tracks[i].node == node && scenery->tracks[i].target == target)
+			return true;
+	return false;
 }
 
 /* ---- nodes and meshes */
@@ -117,7 +127,8 @@ static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mes
 	if (mesh->node >= scenery->node_count || mesh->material >= scenery->material_count ||
 	    !are_near(mesh->origin_m, 3) || !(mesh->step_m > 0 && mesh->step_m <= far_m) ||
 	    mesh->vertex_count < 3 || mesh->vertex_count > SCENERY_VERTICES_MAX ||
-	    mesh->triangle_count < 1 || mesh->triangle_count > SCENERY_TRIANGLES_MAX)
+	    mesh->triangle_count < 1 || mesh->triangle_count > SCENERY_TRIANGLES_MAX ||
+	    mesh->shape_count > SCENERY_SHAPES_MAX)
 		return false;
 	for (uint32_t t = 0; t < mesh->triangle_count; t++)
 		for (int k = 0; k < 3; k++)
@@ -144,19 +155,51 @@ static bool meshes_are_sane(const struct scenery *scenery)
 	return true;
 }
 
+static bool bends_are_sane(const struct scenery *scenery)
+{
+	uint64_t of_shapes = 0, bent = 0;
+
+	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
+		const struct scenery_mesh *mesh = &scenery->meshes[i];
+
+		of_shapes += (uint64_t)mesh->shape_count * mesh->vertex_count;
+		if (mesh->shape_count > 0 || scenery_sets(scenery, mesh->node, SCENERY_COLOUR))
+			bent += mesh->vertex_count;
+	}
+	return of_shapes <= SCENERY_SHAPE_VERTICES_MAX && bent <= SCENERY_BENT_VERTICES_MAX;
+}
+
 /* ---- motions */
+
+/* The greatest value of a target whose values begin at 0; of all others it is 0. */
+static float most_of(enum scenery_target target)
+{
+	switch (target) {
+	case SCENERY_OPACITY:
+	case SCENERY_COLOUR:
+	case SCENERY_GLOW:
+		return 1;
+	case SCENERY_SHAPE:
+		return SCENERY_SHAPES_MAX - 1;
+	default:
+		return 0;
+	}
+}
 
 static bool values_are_sane(const struct scenery_track *track, const float *values)
 {
 	const uint32_t width = scenery_width(track->target);
+	const float most = most_of(track->target);
 
 	for (uint32_t k = 0; k < track->key_count; k++) {
 		const float *value = &values[k * width];
 
 		if (!are_near(value, (int)width) ||
-		    (track->target == SCENERY_TURN && !is_unit(value, 4)) ||
-		    (track->target == SCENERY_OPACITY && (value[0] < 0 || value[0] > 1)))
+		    (track->target == SCENERY_TURN && !is_unit(value, 4)))
 			return false;
+		for (uint32_t i = 0; i < width && most > 0; i++)
+			if (!is_within(value[i], 0, most))
+				return false;
 	}
 	return true;
 }
@@ -231,6 +274,28 @@ static bool motions_are_sane(const struct scenery *scenery)
 	return number == scenery->number_count;
 }
 
+/* ---- drags */
+
+static bool drag_is_sane(const struct scenery *scenery, const struct scenery_drag *drag)
+{
+	const bool is_sphere = drag->kind == SCENERY_DRAG_SPHERE;
+
+	return drag->handle < scenery->node_count && drag->node < scenery->node_count &&
+	       (unsigned)drag->kind < SCENERY_DRAG_KINDS && are_near(drag->offset, 4) &&
+	       (!is_sphere || is_unit(drag->offset, 4)) && are_near(drag->low, 2) &&
+	       are_near(drag->high, 2) && is_within(drag->disc_rad, 0, 1.5708f);
+}
+
+static bool drags_are_sane(const struct scenery *scenery)
+{
+	if (scenery->drag_count > SCENERY_DRAGS_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->drag_count; i++)
+		if (!drag_is_sane(scenery, &scenery->drags[i]))
+			return false;
+	return true;
+}
+
 /* ---- layers */
 
 static bool text_is_sane(const char *text, size_t bytes)
@@ -276,7 +341,7 @@ bool scenery_is_sane(const struct scenery *scenery)
 {
 	return nodes_are_sane(scenery) && materials_are_sane(scenery) && fog_is_sane(scenery) &&
 	       meshes_are_sane(scenery) && touches_are_sane(scenery) && motions_are_sane(scenery) &&
-	       layers_are_sane(scenery);
+	       bends_are_sane(scenery) && drags_are_sane(scenery) && layers_are_sane(scenery);
 }
 
 void scenery_finish(struct scenery *scenery)
@@ -286,12 +351,14 @@ void scenery_finish(struct scenery *scenery)
 	for (uint32_t i = 0; scenery->meshes && i < scenery->mesh_count; i++) {
 		free(scenery->meshes[i].vertices);
 		free(scenery->meshes[i].triangles);
+		free(scenery->meshes[i].shapes);
 	}
 	free(scenery->nodes);
 	free(scenery->materials);
 	free(scenery->meshes);
 	free(scenery->motions);
 	free(scenery->touches);
+	free(scenery->drags);
 	free(scenery->tracks);
 	free(scenery->numbers);
 	free(scenery->layers);

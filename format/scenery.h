@@ -21,8 +21,13 @@ enum {
 	SCENERY_CLEAR_TRIANGLES_MAX = 1 << 14, /* of all with an opacity below 1: they are sorted */
 	SCENERY_MOTIONS_MAX = 256,
 	SCENERY_TOUCHES_MAX = 1024,
-	SCENERY_TRACKS_MAX = 1024,     /* of all motions */
-	SCENERY_NUMBERS_MAX = 1 << 20, /* of all tracks */
+	SCENERY_TRACKS_MAX = 1024,            /* of all motions */
+	SCENERY_NUMBERS_MAX = 1 << 20,        /* of all tracks */
+	SCENERY_SHAPES_MAX = 4096,            /* of a mesh */
+	SCENERY_SHAPE_VERTICES_MAX = 1 << 20, /* in all shapes of all meshes */
+	/* Of all meshes whose vertices motions change: so many are changed for a frame at most. */
+	SCENERY_BENT_VERTICES_MAX = 1 << 17,
+	SCENERY_DRAGS_MAX = 256,
 	SCENERY_LAYERS_MAX = 8,
 	SCENERY_TITLES_MAX = 512,    /* of all layers */
 	SCENERY_LANGUAGE_BYTES = 12, /* with the final zero; so is the next */
@@ -85,6 +90,12 @@ struct scenery_vertex {
 	uint8_t rgb[3];    /* sRGB */
 };
 
+/* A vertex of a shape: where it is, and its normal, instead of those of the mesh. */
+struct scenery_shape_vertex {
+	uint16_t place[3]; /* these two as in struct scenery_vertex */
+	int8_t normal[2];
+};
+
 struct scenery_mesh {
 	uint32_t node;
 	float origin_m[3], step_m;
@@ -92,6 +103,9 @@ struct scenery_mesh {
 	uint32_t vertex_count, triangle_count;
 	struct scenery_vertex *vertices; /* owned */
 	uint16_t (*triangles)[3];        /* owned; counter-clockwise seen from outside */
+	/* What SCENERY_SHAPE of its node chooses from; 0: it is stiff. Each has all vertices. */
+	uint32_t shape_count;
+	struct scenery_shape_vertex *shapes; /* owned; shape by shape */
 };
 
 /* What a track sets, and the numbers of one key. */
@@ -100,6 +114,12 @@ enum scenery_target {
 	SCENERY_TURN,    /* 4: turn */
 	SCENERY_SCALE,   /* 3: scale */
 	SCENERY_OPACITY, /* 1: 0 is invisible, 1 solid; for the node and all below */
+	/* The next ones are for the meshes of the node itself, and not for those below. */
+	SCENERY_COLOUR, /* 3: of all vertices; sRGB, 0 to 1 */
+	SCENERY_GLOW,   /* 3: instead of the material's emissive; sRGB, 0 to 1 */
+	/* 1: 0 is the first shape, 1 the second, 1.5 the middle between the second and the third;
+	 * beyond the last one it is the last one */
+	SCENERY_SHAPE,
 	SCENERY_TARGETS
 };
 
@@ -127,6 +147,32 @@ struct scenery_touch {
 	uint32_t node, motion;
 };
 
+/* What a finger moves as long as it holds it: VRML97's PlaneSensor, CylinderSensor, SphereSensor.
+ */
+enum scenery_drag_kind {
+	SCENERY_DRAG_PLANE,    /* sets move_m, along x and y of the handle */
+	SCENERY_DRAG_CYLINDER, /* sets turn, about y of the handle */
+	SCENERY_DRAG_SPHERE,   /* sets turn, about the handle's origin */
+	SCENERY_DRAG_KINDS
+};
+
+struct scenery_drag {
+	uint32_t handle; /* a finger that drags a mesh of this node, or below it, holds it */
+	uint32_t node;   /* what it moves: a node below the handle, or another one */
+	enum scenery_drag_kind kind;
+	/* The next drag goes on where this one ended; else each begins at the offset. */
+	bool keeps;
+	/* Before the first drag. Plane: metres along x, y and z; cylinder: radians in [0]; sphere:
+	 * a unit quaternion. */
+	float offset[4];
+	/* Plane: metres along x and y; cylinder: radians in [0]. Where low is above high there is
+	 * no limit. */
+	float low[2], high[2];
+	/* Cylinder: looked at along its axis, within this angle in radians, it is turned as a disc;
+	 * else as a roller. 0 to pi / 2. */
+	float disc_rad;
+};
+
 struct scenery_title {
 	char language[SCENERY_LANGUAGE_BYTES]; /* as in temple.ini */
 	char text[SCENERY_TITLE_BYTES];        /* UTF-8 */
@@ -141,12 +187,13 @@ struct scenery_layer {
 struct scenery {
 	uint32_t node_count, mesh_count, motion_count, touch_count, track_count, number_count;
 	uint32_t layer_count; /* 0, or at least 2 */
-	uint32_t title_count, material_count;
+	uint32_t title_count, material_count, drag_count;
 	struct scenery_node *nodes;
 	struct scenery_material *materials;
 	struct scenery_mesh *meshes;
 	struct scenery_motion *motions;
 	struct scenery_touch *touches;
+	struct scenery_drag *drags;
 	struct scenery_track *tracks; /* motion by motion */
 	float *numbers;               /* track by track */
 	struct scenery_layer *layers;
@@ -158,6 +205,8 @@ struct scenery {
 uint32_t scenery_width(enum scenery_target target);
 /* Returns whether the scenery keeps all rules of this header. */
 bool scenery_is_sane(const struct scenery *scenery);
+/* Returns whether a track of some motion sets the target for a node. */
+bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_target target);
 /* Returns the triangles of all meshes. */
 uint32_t scenery_triangles(const struct scenery *scenery);
 

@@ -7,8 +7,11 @@
 
 #include <zstd.h>
 
+#include "format/scenery_motion_code.h"
+
 enum {
-	VERSION = 2,
+	VERSION = 3,
+	VERSION_STIFF = 2, /* without shapes and drags */
 	VERSION_PLAIN = 1, /* without materials and fog; a mesh said whether it has two sides */
 	ZSTD_LEVEL = 19,
 	HEADER_BYTES = 9,
@@ -20,9 +23,8 @@ enum {
 	MESH_BYTES = 4 + 4 * 4 + 1 + 4 + 4, /* at least */
 	VERTEX_BYTES = 11,
 	TRIANGLE_BYTES = 6,
-	MOTION_BYTES = 4 + 1 + 1 + 4,
-	TOUCH_BYTES = 4 + 4,
-	TRACK_BYTES = 4 + 1 + 4,
+	BEND_BYTES = 4 + 4, /* at least */
+	SHAPE_VERTEX_BYTES = 8,
 	LAYER_BYTES = 1,
 	TITLE_BYTES = 4,
 };
@@ -31,46 +33,36 @@ static const char magic[4] = { 'G', 'P', 's', 'y' };
 
 /* ---- numbers, in the same order both ways */
 
-static void put_floats(struct buffer *out, const float *numbers, uint32_t count)
+/* Reads a count; more than `most`, or more than the bytes that are left can hold, is a failure. */
+static uint32_t get_count(struct reader *in, uint32_t most, size_t bytes_each)
 {
-	for (uint32_t i = 0; i < count; i++)
-		buffer_put_f32(out, numbers[i]);
-}
+	uint32_t count = reader_u32(in);
 
-static void get_floats(struct reader *in, float *numbers, uint32_t count)
-{
-	for (uint32_t i = 0; i < count; i++)
-		numbers[i] = reader_f32(in);
-}
-
-static bool get_flag(struct reader *in)
-{
-	uint8_t flag = reader_u8(in);
-
-	in->failed = in->failed || flag > 1;
-	return flag;
+	if (count > most || count > reader_left(in) / bytes_each)
+		in->failed = true;
+	return in->failed ? 0 : count;
 }
 
 static void put_node(struct buffer *out, const struct scenery_node *node)
 {
 	buffer_put_u32(out, node->parent);
 	buffer_put_u32(out, node->layer);
-	put_floats(out, node->place.move_m, 3);
-	put_floats(out, node->place.turn, 4);
-	put_floats(out, node->place.scale, 3);
-	put_floats(out, node->place.centre_m, 3);
-	put_floats(out, node->place.stretch, 4);
+	scenery_put_floats(out, node->place.move_m, 3);
+	scenery_put_floats(out, node->place.turn, 4);
+	scenery_put_floats(out, node->place.scale, 3);
+	scenery_put_floats(out, node->place.centre_m, 3);
+	scenery_put_floats(out, node->place.stretch, 4);
 }
 
 static void get_node(struct reader *in, struct scenery_node *node)
 {
 	node->parent = reader_u32(in);
 	node->layer = reader_u32(in);
-	get_floats(in, node->place.move_m, 3);
-	get_floats(in, node->place.turn, 4);
-	get_floats(in, node->place.scale, 3);
-	get_floats(in, node->place.centre_m, 3);
-	get_floats(in, node->place.stretch, 4);
+	scenery_get_floats(in, node->place.move_m, 3);
+	scenery_get_floats(in, node->place.turn, 4);
+	scenery_get_floats(in, node->place.scale, 3);
+	scenery_get_floats(in, node->place.centre_m, 3);
+	scenery_get_floats(in, node->place.stretch, 4);
 }
 
 enum { TWO_SIDES = 1, BY_PIXEL = 2, MATERIAL_FLAGS = 3 };
@@ -86,7 +78,7 @@ static void put_material(struct buffer *out, const struct scenery_material *mate
 	buffer_put_u8(out, material->substance);
 	buffer_put_f32(out, material->relief_m);
 	buffer_put_f32(out, material->mirror);
-	put_floats(out, material->grain, 3);
+	scenery_put_floats(out, material->grain, 3);
 }
 
 static void get_rgb(struct reader *in, uint8_t rgb[3])
@@ -109,7 +101,7 @@ static void get_material(struct reader *in, struct scenery_material *material)
 	material->substance = reader_u8(in);
 	material->relief_m = reader_f32(in);
 	material->mirror = reader_f32(in);
-	get_floats(in, material->grain, 3);
+	scenery_get_floats(in, material->grain, 3);
 }
 
 static void put_fog(struct buffer *out, const struct scenery_fog *fog)
@@ -123,7 +115,7 @@ static void put_fog(struct buffer *out, const struct scenery_fog *fog)
 static void get_fog(struct reader *in, struct scenery_fog *fog)
 {
 	fog->range_m = reader_f32(in);
-	fog->is_exponential = get_flag(in);
+	fog->is_exponential = scenery_get_flag(in);
 	get_rgb(in, fog->rgb);
 	fog->layer = reader_u32(in);
 }
@@ -134,7 +126,7 @@ static void put_mesh(struct buffer *out, const struct scenery_mesh *mesh)
 	const struct scenery_vertex *vertices = mesh->vertices;
 
 	buffer_put_u32(out, mesh->node);
-	put_floats(out, mesh->origin_m, 3);
+	scenery_put_floats(out, mesh->origin_m, 3);
 	buffer_put_f32(out, mesh->step_m);
 	buffer_put_u32(out, mesh->material);
 	buffer_put_u32(out, mesh->vertex_count);
@@ -157,10 +149,10 @@ static int get_mesh(struct reader *in, struct scenery_mesh *mesh, uint8_t versio
 	struct bytes colours;
 
 	mesh->node = reader_u32(in);
-	get_floats(in, mesh->origin_m, 3);
+	scenery_get_floats(in, mesh->origin_m, 3);
 	mesh->step_m = reader_f32(in);
 	/* a plain object's two materials differ in their sides */
-	mesh->material = version == VERSION_PLAIN ? get_flag(in) : reader_u32(in);
+	mesh->material = version == VERSION_PLAIN ? scenery_get_flag(in) : reader_u32(in);
 	mesh->vertex_count = reader_u32(in);
 	mesh->triangle_count = reader_u32(in);
 	needed = (uint64_t)mesh->vertex_count * VERTEX_BYTES +
@@ -183,67 +175,6 @@ static int get_mesh(struct reader *in, struct scenery_mesh *mesh, uint8_t versio
 	for (uint32_t t = 0; t < mesh->triangle_count; t++)
 		for (int k = 0; k < 3; k++)
 			mesh->triangles[t][k] = reader_u16(in);
-	return 0;
-}
-
-static void put_motions(struct buffer *out, const struct scenery *scenery)
-{
-	for (uint32_t i = 0; i < scenery->motion_count; i++) {
-		const struct scenery_motion *motion = &scenery->motions[i];
-
-		buffer_put_f32(out, motion->duration_s);
-		buffer_put_u8(out, motion->loops);
-		buffer_put_u8(out, motion->returns);
-		buffer_put_u32(out, motion->track_count);
-	}
-	for (uint32_t i = 0; i < scenery->touch_count; i++) {
-		buffer_put_u32(out, scenery->touches[i].node);
-		buffer_put_u32(out, scenery->touches[i].motion);
-	}
-	for (uint32_t i = 0; i < scenery->track_count; i++) {
-		const struct scenery_track *track = &scenery->tracks[i];
-
-		buffer_put_u32(out, track->node);
-		buffer_put_u8(out, (uint8_t)track->target);
-		buffer_put_u32(out, track->key_count);
-	}
-	put_floats(out, scenery->numbers, scenery->number_count);
-}
-
-static int get_motions(struct reader *in, struct scenery *scenery)
-{
-	uint32_t next = 0;
-
-	for (uint32_t i = 0; i < scenery->motion_count; i++) {
-		struct scenery_motion *motion = &scenery->motions[i];
-
-		motion->duration_s = reader_f32(in);
-		motion->loops = get_flag(in);
-		motion->returns = get_flag(in);
-		motion->first_track = next;
-		motion->track_count = reader_u32(in);
-		if (motion->track_count > SCENERY_TRACKS_MAX)
-			return -EBADMSG;
-		next += motion->track_count;
-	}
-	for (uint32_t i = 0; i < scenery->touch_count; i++) {
-		scenery->touches[i].node = reader_u32(in);
-		scenery->touches[i].motion = reader_u32(in);
-	}
-	next = 0;
-	for (uint32_t i = 0; i < scenery->track_count; i++) {
-		struct scenery_track *track = &scenery->tracks[i];
-
-		track->node = reader_u32(in);
-		track->target = reader_u8(in);
-		track->first = next;
-		track->key_count = reader_u32(in);
-		if ((unsigned)track->target >= SCENERY_TARGETS ||
-		    track->key_count > SCENERY_NUMBERS_MAX)
-			return -EBADMSG;
-		next += track->key_count * (1 + scenery_width(track->target));
-	}
-	get_floats(in, scenery->numbers, scenery->number_count);
 	return 0;
 }
 
@@ -274,6 +205,74 @@ static void get_layers(struct reader *in, struct scenery *scenery)
 	}
 }
 
+/* ---- shapes: each number of all vertices of a shape stands together */
+
+static void put_shapes(struct buffer *out, const struct scenery *scenery)
+{
+	uint32_t bends = 0;
+
+	for (uint32_t i = 0; i < scenery->mesh_count; i++)
+		bends += scenery->meshes[i].shape_count > 0;
+	buffer_put_u32(out, bends);
+	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
+		const struct scenery_mesh *mesh = &scenery->meshes[i];
+
+		if (mesh->shape_count == 0)
+			continue;
+		buffer_put_u32(out, i);
+		buffer_put_u32(out, mesh->shape_count);
+		for (uint32_t s = 0; s < mesh->shape_count; s++) {
+			const struct scenery_shape_vertex *shape =
+				&mesh->shapes[(size_t)s * mesh->vertex_count];
+
+			for (int k = 0; k < 3; k++)
+				for (uint32_t v = 0; v < mesh->vertex_count; v++)
+					buffer_put_u16(out, shape[v].place[k]);
+			for (uint32_t v = 0; v < mesh->vertex_count; v++)
+				buffer_put(out, shape[v].normal, 2);
+		}
+	}
+}
+
+static void get_shape(struct reader *in, struct scenery_shape_vertex *shape, uint32_t count)
+{
+	for (int k = 0; k < 3; k++)
+		for (uint32_t v = 0; v < count; v++)
+			shape[v].place[k] = reader_u16(in);
+	for (uint32_t v = 0; v < count; v++)
+		for (int k = 0; k < 2; k++)
+			shape[v].normal[k] = (int8_t)reader_u8(in);
+}
+
+static int get_shapes(struct reader *in, struct scenery *scenery)
+{
+	const uint32_t bends = get_count(in, SCENERY_MESHES_MAX, BEND_BYTES);
+	uint32_t next = 0;
+
+	for (uint32_t i = 0; i < bends; i++) {
+		const uint32_t number = reader_u32(in), count = reader_u32(in);
+		struct scenery_mesh *mesh;
+		size_t vertices;
+
+		if (in->failed || number < next || number >= scenery->mesh_count || count < 1 ||
+		    count > SCENERY_SHAPES_MAX)
+			return -EBADMSG;
+		next = number + 1;
+		mesh = &scenery->meshes[number];
+		vertices = (size_t)count * mesh->vertex_count;
+		if (vertices > reader_left(in) / SHAPE_VERTEX_BYTES)
+			return -EBADMSG;
+		mesh->shapes = calloc(vertices + 1, sizeof(*mesh->shapes));
+		if (!mesh->shapes)
+			return -ENOMEM;
+		mesh->shape_count = count;
+		for (uint32_t s = 0; s < count; s++)
+			get_shape(in, &mesh->shapes[(size_t)s * mesh->vertex_count],
+				  mesh->vertex_count);
+	}
+	return 0;
+}
+
 /* ---- the whole */
 
 static void put_raw(struct buffer *out, const struct scenery *scenery)
@@ -287,6 +286,7 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 	buffer_put_u32(out, scenery->layer_count);
 	buffer_put_u32(out, scenery->title_count);
 	buffer_put_u32(out, scenery->material_count);
+	buffer_put_u32(out, scenery->drag_count);
 	for (uint32_t i = 0; i < scenery->material_count; i++)
 		put_material(out, &scenery->materials[i]);
 	put_fog(out, &scenery->fog);
@@ -294,8 +294,10 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 		put_node(out, &scenery->nodes[i]);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
 		put_mesh(out, &scenery->meshes[i]);
-	put_motions(out, scenery);
+	scenery_put_motions(out, scenery);
 	put_layers(out, scenery);
+	scenery_put_drags(out, scenery);
+	put_shapes(out, scenery);
 }
 
 int scenery_encode(struct buffer *out, const struct scenery *scenery)
@@ -331,16 +333,6 @@ int scenery_encode(struct buffer *out, const struct scenery *scenery)
 	return rc;
 }
 
-/* Reads a count; more than `most`, or more than the bytes that are left can hold, is a failure. */
-static uint32_t get_count(struct reader *in, uint32_t most, size_t bytes_each)
-{
-	uint32_t count = reader_u32(in);
-
-	if (count > most || count > reader_left(in) / bytes_each)
-		in->failed = true;
-	return in->failed ? 0 : count;
-}
-
 enum { PLAIN_MATERIALS = 2 };
 
 static void get_looks(struct reader *in, struct scenery *out, uint8_t version)
@@ -364,9 +356,9 @@ static int get_counts(struct reader *in, struct scenery *out, uint8_t version)
 
 	out->node_count = get_count(in, SCENERY_NODES_MAX, NODE_BYTES);
 	meshes = get_count(in, SCENERY_MESHES_MAX, MESH_BYTES);
-	out->motion_count = get_count(in, SCENERY_MOTIONS_MAX, MOTION_BYTES);
-	out->touch_count = get_count(in, SCENERY_TOUCHES_MAX, TOUCH_BYTES);
-	out->track_count = get_count(in, SCENERY_TRACKS_MAX, TRACK_BYTES);
+	out->motion_count = get_count(in, SCENERY_MOTIONS_MAX, SCENERY_MOTION_BYTES);
+	out->touch_count = get_count(in, SCENERY_TOUCHES_MAX, SCENERY_TOUCH_BYTES);
+	out->track_count = get_count(in, SCENERY_TRACKS_MAX, SCENERY_TRACK_BYTES);
 	out->number_count = get_count(in, SCENERY_NUMBERS_MAX, 4);
 	out->layer_count = get_count(in, SCENERY_LAYERS_MAX, LAYER_BYTES);
 	out->title_count = get_count(in, SCENERY_TITLES_MAX, TITLE_BYTES);
@@ -374,6 +366,8 @@ static int get_counts(struct reader *in, struct scenery *out, uint8_t version)
 		out->material_count = get_count(in, SCENERY_MATERIALS_MAX, MATERIAL_BYTES);
 	else
 		out->material_count = PLAIN_MATERIALS;
+	if (version == VERSION)
+		out->drag_count = get_count(in, SCENERY_DRAGS_MAX, SCENERY_DRAG_BYTES);
 	if (in->failed)
 		return -EBADMSG;
 	out->materials = calloc(out->material_count + 1, sizeof(*out->materials));
@@ -381,12 +375,13 @@ static int get_counts(struct reader *in, struct scenery *out, uint8_t version)
 	out->meshes = calloc(meshes + 1, sizeof(*out->meshes));
 	out->motions = calloc(out->motion_count + 1, sizeof(*out->motions));
 	out->touches = calloc(out->touch_count + 1, sizeof(*out->touches));
+	out->drags = calloc(out->drag_count + 1, sizeof(*out->drags));
 	out->tracks = calloc(out->track_count + 1, sizeof(*out->tracks));
 	out->numbers = calloc(out->number_count + 1, sizeof(*out->numbers));
 	out->layers = calloc(out->layer_count + 1, sizeof(*out->layers));
 	out->titles = calloc(out->title_count + 1, sizeof(*out->titles));
 	if (!out->materials || !out->nodes || !out->meshes || !out->motions || !out->touches ||
-	    !out->tracks || !out->numbers || !out->layers || !out->titles)
+	    !out->drags || !out->tracks || !out->numbers || !out->layers || !out->titles)
 		return -ENOMEM;
 	out->mesh_count = meshes;
 	return 0;
@@ -406,9 +401,14 @@ static int get_raw(struct scenery *out, struct bytes raw, uint8_t version)
 	for (uint32_t i = 0; rc == 0 && i < out->mesh_count; i++)
 		rc = get_mesh(&in, &out->meshes[i], version);
 	if (rc == 0)
-		rc = get_motions(&in, out);
-	if (rc == 0) {
+		rc = scenery_get_motions(&in, out);
+	if (rc == 0)
 		get_layers(&in, out);
+	if (rc == 0 && version == VERSION) {
+		scenery_get_drags(&in, out);
+		rc = get_shapes(&in, out);
+	}
+	if (rc == 0) {
 		if (in.failed || reader_left(&in) > 0 || !scenery_is_sane(out))
 			rc = -EBADMSG;
 	}
@@ -426,8 +426,8 @@ int scenery_decode(struct scenery *out, struct bytes object)
 
 	*out = (struct scenery){ 0 };
 	if (object.size < HEADER_BYTES || object.size > OBJECT_MAX ||
-	    memcmp(object.data, magic, sizeof(magic)) != 0 ||
-	    (object.data[4] != VERSION && object.data[4] != VERSION_PLAIN))
+	    memcmp(object.data, magic, sizeof(magic)) != 0 || object.data[4] < VERSION_PLAIN ||
+	    object.data[4] > VERSION)
 		return -EBADMSG;
 	reader_init(&in, object);
 	(void)reader_bytes(&in, 5);

@@ -115,6 +115,13 @@ const struct scenery *scene_scenery(const struct scene *scene);
 /* A finger touched a pixel of the given camera. Returns whether scenery in front of all else
  * answers: something begins to move. */
 bool scene_touch(struct scene *scene, const struct camera *camera, float x_px, float y_px);
+/* A finger begins to drag at a pixel. Returns whether it holds scenery that it may move, in front
+ * of all else. */
+bool scene_grab(struct scene *scene, const struct camera *camera, float x_px, float y_px);
+/* The finger that holds scenery is at a pixel now. */
+void scene_drag(struct scene *scene, const struct camera *camera, float x_px, float y_px);
+/* The finger lets go; what it moved stays. Nothing held is fine. */
+void scene_let_go(struct scene *scene);
 /* Returns the chosen layer. */
 uint32_t scene_layer(const struct scene *scene);
 /* Dissolves to a layer; one that there is not is ignored. */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/log.h"
+#include "geometry/vec.h"
 
 int scene_put_scenery(struct scene *scene, struct scenery *scenery)
 {
@@ -70,8 +71,10 @@ struct surface_fog scene_fog(const struct scene *scene)
 
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 {
-	if (is_shown(scene) && !frame->shares)
-		scenery_picture_draw(&scene->scenery.picture, &scene->scenery.pose, frame);
+	if (!is_shown(scene) || frame->shares)
+		return;
+	scenery_picture_bend(&scene->scenery.picture, &scene->scenery.pose);
+	scenery_picture_draw(&scene->scenery.picture, &scene->scenery.pose, frame);
 }
 
 uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],
@@ -82,21 +85,61 @@ uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],
 		       : SCENERY_NONE;
 }
 
+/* Returns the node of the scenery under a finger, or SCENERY_NONE: what stands in front of it takes
+ * the touch. Sets direction to the finger's ray, and *distance_m to how far it goes. */
+static uint32_t node_under(const struct scene *scene, const struct camera *camera, float x_px,
+			   float y_px, float direction[3], float *distance_m)
+{
+	float least = camera->near_m;
+
+	*distance_m = INFINITY;
+	camera_ray(camera, x_px, y_px, direction);
+	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, distance_m))
+		return SCENERY_NONE;
+	geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, distance_m,
+		     NULL);
+	return scene_ray_scenery(scene, camera->eye_m, direction, least, distance_m);
+}
+
 bool scene_touch(struct scene *scene, const struct camera *camera, float x_px, float y_px)
 {
-	float direction[3], distance = INFINITY, least = camera->near_m;
+	float direction[3], distance;
 	uint32_t node;
 
 	if (!is_shown(scene) || scene->scenery.content.touch_count == 0)
 		return false;
-	camera_ray(camera, x_px, y_px, direction);
-	if (!section_clip(&scene->tools.section, camera->eye_m, direction, &least, &distance))
-		return false;
-	/* What stands in front of it takes the touch. */
-	geometry_ray(&scene->geometry, &scene->cut, camera->eye_m, direction, least, &distance,
-		     NULL);
-	node = scene_ray_scenery(scene, camera->eye_m, direction, least, &distance);
+	node = node_under(scene, camera, x_px, y_px, direction, &distance);
 	return node != SCENERY_NONE && pose_touch(&scene->scenery.pose, node);
+}
+
+bool scene_grab(struct scene *scene, const struct camera *camera, float x_px, float y_px)
+{
+	float direction[3], distance, point_m[3];
+	uint32_t node;
+
+	if (!is_shown(scene) || scene->scenery.content.drag_count == 0)
+		return false;
+	node = node_under(scene, camera, x_px, y_px, direction, &distance);
+	if (node == SCENERY_NONE)
+		return false;
+	vec_add_scaled(point_m, camera->eye_m, distance, direction);
+	return pose_grab(&scene->scenery.pose, node, point_m, direction);
+}
+
+void scene_drag(struct scene *scene, const struct camera *camera, float x_px, float y_px)
+{
+	float direction[3];
+
+	if (!is_shown(scene))
+		return;
+	camera_ray(camera, x_px, y_px, direction);
+	pose_drag(&scene->scenery.pose, camera->eye_m, direction);
+}
+
+void scene_let_go(struct scene *scene)
+{
+	if (scene->scenery.is_here)
+		pose_let_go(&scene->scenery.pose);
 }
 
 const struct scenery *scene_scenery(const struct scene *scene)

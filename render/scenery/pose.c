@@ -139,6 +139,7 @@ static void apply(struct pose *pose, const struct scenery_motion *motion, float 
 	for (uint32_t t = 0; t < motion->track_count; t++) {
 		const struct scenery_track *track = &pose->scenery->tracks[motion->first_track + t];
 		struct scenery_place *place = &pose->places[track->node];
+		struct bend_look *look = &pose->looks[track->node];
 
 		switch (track->target) {
 		case SCENERY_MOVE:
@@ -150,11 +151,30 @@ static void apply(struct pose *pose, const struct scenery_motion *motion, float 
 		case SCENERY_SCALE:
 			pose_value(pose->scenery, track, share, place->scale);
 			break;
+		case SCENERY_COLOUR:
+			look->has_colour = true;
+			pose_value(pose->scenery, track, share, look->colour);
+			break;
+		case SCENERY_GLOW:
+			look->has_glow = true;
+			pose_value(pose->scenery, track, share, look->glow);
+			break;
+		case SCENERY_SHAPE:
+			look->has_shape = true;
+			pose_value(pose->scenery, track, share, &look->shape);
+			break;
 		default:
 			pose_value(pose->scenery, track, share, &pose->opacity[track->node]);
 			break;
 		}
 	}
+}
+
+/* Everything as the places, opacities and looks of the nodes have it. */
+static void settle(struct pose *pose)
+{
+	place_nodes(pose);
+	bend_update(&pose->bend, pose->scenery, pose->looks);
 }
 
 static bool is_touched(const struct scenery *scenery, uint32_t motion)
@@ -169,12 +189,15 @@ int pose_init(struct pose *pose, const struct scenery *scenery)
 {
 	const uint32_t nodes = scenery->node_count;
 
-	*pose = (struct pose){ .scenery = scenery, .layer_shares = { 1 } };
+	*pose = (struct pose){ .scenery = scenery, .layer_shares = { 1 }, .held = SCENERY_NONE };
 	pose->nodes = calloc(nodes + 1, sizeof(*pose->nodes));
 	pose->places = calloc(nodes + 1, sizeof(*pose->places));
 	pose->opacity = calloc(nodes + 1, sizeof(*pose->opacity));
 	pose->motions = calloc(scenery->motion_count + 1, sizeof(*pose->motions));
-	if (!pose->nodes || !pose->places || !pose->opacity || !pose->motions) {
+	pose->looks = calloc(nodes + 1, sizeof(*pose->looks));
+	pose->drags = calloc(scenery->drag_count + 1, sizeof(*pose->drags));
+	if (!pose->nodes || !pose->places || !pose->opacity || !pose->motions || !pose->looks ||
+	    !pose->drags || bend_init(&pose->bend, scenery) < 0) {
 		pose_finish(pose);
 		return -ENOMEM;
 	}
@@ -184,7 +207,9 @@ int pose_init(struct pose *pose, const struct scenery *scenery)
 	}
 	for (uint32_t i = 0; i < scenery->motion_count; i++)
 		pose->motions[i].runs = !is_touched(scenery, i);
-	place_nodes(pose);
+	for (uint32_t i = 0; i < scenery->drag_count; i++)
+		drag_init(&pose->drags[i], &scenery->drags[i]);
+	settle(pose);
 	return 0;
 }
 
@@ -196,6 +221,9 @@ void pose_finish(struct pose *pose)
 	free(pose->places);
 	free(pose->opacity);
 	free(pose->motions);
+	free(pose->looks);
+	free(pose->drags);
+	bend_finish(&pose->bend);
 	*pose = (struct pose){ 0 };
 }
 
@@ -229,6 +257,20 @@ static void step_layers(struct pose *pose, float passed_ms)
 	*chosen = share;
 }
 
+struct scenery_material pose_material(const struct pose *pose, uint32_t mesh)
+{
+	const struct scenery_mesh *of = &pose->scenery->meshes[mesh];
+	const struct bend_look *look = &pose->looks[of->node];
+	struct scenery_material material = pose->scenery->materials[of->material];
+
+	for (int k = 0; k < 3 && look->has_glow; k++)
+		material.emissive[k] = (uint8_t)lrintf(look->glow[k] * 255);
+	/* What will glow has the program of what does: none is built while it begins. */
+	if (pose->bend.meshes[mesh].glows && material.emissive[2] == 0)
+		material.emissive[2] = 1;
+	return material;
+}
+
 bool pose_moves(const struct pose *pose)
 {
 	if (pose->scenery->node_count == 0)
@@ -236,7 +278,7 @@ bool pose_moves(const struct pose *pose)
 	for (uint32_t i = 0; i < pose->scenery->motion_count; i++)
 		if (pose->motions[i].runs)
 			return true;
-	return pose->appeared < 1 || pose->layer_shares[pose->layer] < 1;
+	return pose->was_dragged || pose->appeared < 1 || pose->layer_shares[pose->layer] < 1;
 }
 
 bool pose_step(struct pose *pose, float passed_ms)
@@ -248,7 +290,8 @@ bool pose_step(struct pose *pose, float passed_ms)
 			step_motion(pose, i, passed_ms);
 	step_layers(pose, passed_ms);
 	pose->appeared = vec_least(pose->appeared + passed_ms / appear_ms, 1);
-	place_nodes(pose);
+	pose->was_dragged = false;
+	settle(pose);
 	return true;
 }
 
@@ -286,9 +329,74 @@ bool pose_touch(struct pose *pose, uint32_t node)
 	return answers;
 }
 
+bool pose_grab(struct pose *pose, uint32_t node, const float point_m[3], const float direction[3])
+{
+	const struct scenery *scenery = pose->scenery;
+
+	pose->held = SCENERY_NONE;
+	for (; node != SCENERY_NONE && pose->held == SCENERY_NONE;
+	     node = scenery->nodes[node].parent)
+		for (uint32_t i = 0; i < scenery->drag_count; i++)
+			if (scenery->drags[i].handle == node &&
+			    drag_begin(&pose->drags[i], &scenery->drags[i],
+				       pose->nodes[node].matrix, point_m, direction))
+				pose->held = node;
+	return pose->held != SCENERY_NONE;
+}
+
+void pose_drag(struct pose *pose, const float from_m[3], const float direction[3])
+{
+	const struct scenery *scenery = pose->scenery;
+
+	for (uint32_t i = 0; i < scenery->drag_count; i++) {
+		const struct scenery_drag *of = &scenery->drags[i];
+		struct scenery_place *place = &pose->places[of->node];
+		float value[4];
+
+		if (pose->held == SCENERY_NONE || of->handle != pose->held)
+			continue;
+		drag_move(&pose->drags[i], of, from_m, direction);
+		drag_value(&pose->drags[i], of, value);
+		if (of->kind == SCENERY_DRAG_PLANE)
+			vec_copy(place->move_m, value);
+		else
+			memcpy(place->turn, value, sizeof(place->turn));
+		pose->was_dragged = true;
+	}
+	settle(pose);
+}
+
+void pose_let_go(struct pose *pose)
+{
+	const struct scenery *scenery = pose->scenery;
+
+	for (uint32_t i = 0; i < scenery->drag_count; i++)
+		if (pose->held != SCENERY_NONE && scenery->drags[i].handle == pose->held)
+			drag_end(&pose->drags[i], &scenery->drags[i]);
+	pose->held = SCENERY_NONE;
+}
+
 void pose_choose(struct pose *pose, uint32_t layer)
 {
 	pose->layer = layer;
+}
+
+static void reset_drags(struct pose *pose)
+{
+	const struct scenery *scenery = pose->scenery;
+
+	pose->held = SCENERY_NONE;
+	for (uint32_t i = 0; i < scenery->drag_count; i++) {
+		const struct scenery_drag *of = &scenery->drags[i];
+		const struct scenery_place *rest = &scenery->nodes[of->node].place;
+
+		drag_init(&pose->drags[i], of);
+		if (of->kind == SCENERY_DRAG_PLANE)
+			vec_copy(pose->places[of->node].move_m, rest->move_m);
+		else
+			memcpy(pose->places[of->node].turn, rest->turn, sizeof(rest->turn));
+		pose->was_dragged = true;
+	}
 }
 
 void pose_reset(struct pose *pose)
@@ -311,7 +419,9 @@ void pose_reset(struct pose *pose)
 
 			pose->places[node] = scenery->nodes[node].place;
 			pose->opacity[node] = 1;
+			pose->looks[node] = (struct bend_look){ 0 };
 		}
 	}
-	place_nodes(pose);
+	reset_drags(pose);
+	settle(pose);
 }

@@ -4,6 +4,8 @@
 #define GOPURA_RENDER_SCENERY_POSE_H
 
 #include "format/scenery.h"
+#include "render/scenery/bent_meshes.h"
+#include "render/scenery/drag.h"
 
 struct pose_node {
 	float matrix[16]; /* column-major; from the node to metres of the model */
@@ -19,11 +21,16 @@ struct pose_motion {
 
 struct pose {
 	const struct scenery *scenery; /* borrowed */
-	struct pose_node *nodes;       /* this and the next three are owned */
+	struct pose_node *nodes;       /* this and the next five are owned */
 	struct scenery_place *places;
 	float *opacity;
 	struct pose_motion *motions;
-	uint32_t layer;                         /* the chosen one */
+	struct bend_look *looks; /* of the meshes of each node */
+	struct drag *drags;
+	struct bend bend; /* owned */
+	uint32_t held;    /* the handle that a finger drags; SCENERY_NONE: none */
+	bool was_dragged; /* since the last step */
+	uint32_t layer;   /* the chosen one */
 	float layer_shares[SCENERY_LAYERS_MAX]; /* their sum is 1 */
 	float appeared;                         /* all of it, 0 to 1 */
 };
@@ -40,11 +47,22 @@ bool pose_moves(const struct pose *pose);
 /* A finger touched a mesh of that node. Starts or stops what the touch is for; returns whether it
  * is for anything. */
 bool pose_touch(struct pose *pose, uint32_t node);
+/* A finger begins to drag at a place on a mesh of that node, in metres of the model; direction: of
+ * the ray from the eye to it. Returns whether something is held: the innermost node that is a
+ * handle is. */
+bool pose_grab(struct pose *pose, uint32_t node, const float point_m[3], const float direction[3]);
+/* The finger is where this ray goes. Moves what is held. */
+void pose_drag(struct pose *pose, const float from_m[3], const float direction[3]);
+/* The finger is lifted, or has become one of two. Nothing held is fine. */
+void pose_let_go(struct pose *pose);
 /* Dissolves to a layer, less than layer_count. */
 void pose_choose(struct pose *pose, uint32_t layer);
-/* For the next visitor: doors close, and the first layer comes back. */
+/* For the next visitor: doors close, what was dragged is where it was, and the first layer comes
+ * back. */
 void pose_reset(struct pose *pose);
 
+/* Returns the material of a mesh with what motions did to it. */
+struct scenery_material pose_material(const struct pose *pose, uint32_t mesh);
 /* Sets out to the value of a track at a share of its motion; scenery_width() numbers. */
 void pose_value(const struct scenery *scenery, const struct scenery_track *track, float share,
 		float *out);

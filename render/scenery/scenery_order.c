@@ -11,6 +11,7 @@ int scenery_order_add(struct scenery_order *order, const struct pose *pose, uint
 		      const float eye_m[3])
 {
 	const struct scenery_mesh *of = &pose->scenery->meshes[mesh];
+	const struct scenery_vertex *vertices = bend_vertices(&pose->bend, pose->scenery, mesh);
 	const float *m = pose->nodes[of->node].matrix;
 	int rc = ARRAY_RESERVE(order->triangles, order->room,
 			       (uint64_t)order->count + of->triangle_count,
@@ -21,7 +22,7 @@ int scenery_order_add(struct scenery_order *order, const struct pose *pose, uint
 
 		for (int corner = 0; corner < 3; corner++)
 			for (int k = 0; k < 3; k++)
-				middle[k] += of->vertices[of->triangles[t][corner]].place[k] / 3.0f;
+				middle[k] += vertices[of->triangles[t][corner]].place[k] / 3.0f;
 		for (int k = 0; k < 3; k++)
 			middle[k] = of->origin_m[k] + of->step_m * middle[k];
 		for (int row = 0; row < 3; row++)

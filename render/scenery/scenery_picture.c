@@ -85,6 +85,23 @@ void scenery_picture_finish(struct scenery_picture *picture)
 	*picture = (struct scenery_picture){ 0 };
 }
 
+void scenery_picture_bend(struct scenery_picture *picture, const struct pose *pose)
+{
+	for (uint32_t i = 0; i < pose->scenery->mesh_count; i++) {
+		const struct bend_mesh *bent = &pose->bend.meshes[i];
+		struct scenery_offset *at = &picture->offsets[i];
+
+		if (at->bend_version == bent->version)
+			continue;
+		at->bend_version = bent->version;
+		glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
+		glBufferSubData(GL_ARRAY_BUFFER, (GLintptr)at->vertex_bytes,
+				(GLsizeiptr)(pose->scenery->meshes[i].vertex_count *
+					     sizeof(*bent->vertices)),
+				bent->vertices);
+	}
+}
+
 /* ---- drawing */
 
 /* The ball around a mesh, in metres of the model. */
@@ -233,11 +250,11 @@ static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
 {
 	const struct scenery *scenery = drawing->pose->scenery;
 	const struct scenery_mesh *of = &scenery->meshes[mesh];
-	const struct scenery_material *material = &scenery->materials[of->material];
+	const struct scenery_material material = pose_material(drawing->pose, mesh);
 	const struct pose_node *node = &drawing->pose->nodes[of->node];
 	const struct dissolve_range range = { node->low, node->high };
 	const struct scenery_program *p = scenery_programs_get(
-		&drawing->picture->programs, features_of(drawing, material, range),
+		&drawing->picture->programs, features_of(drawing, &material, range),
 		drawing->frame->root->cut);
 	const size_t first = drawing->picture->offsets[mesh].vertex_bytes;
 	const GLsizei stride = sizeof(struct scenery_vertex);
@@ -247,9 +264,9 @@ static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
 	if (p->program != drawing->used)
 		set_frame(p, drawing->frame);
 	drawing->used = p->program;
-	set_material(p, material);
-	set_solid(p, material, of, node->matrix);
-	set_mesh(p, of, node, drawing->frame, material->has_two_sides);
+	set_material(p, &material);
+	set_solid(p, &material, of, node->matrix);
+	set_mesh(p, of, node, drawing->frame, material.has_two_sides);
 	glVertexAttribPointer(0, 3, GL_UNSIGNED_SHORT, GL_FALSE, stride,
 			      (void *)(first + offsetof(struct scenery_vertex, place)));
 	glVertexAttribPointer(1, 2, GL_BYTE, GL_FALSE, stride,
@@ -383,8 +400,9 @@ static bool hits(const float corners[3][3], const float direction[3], float leas
 	return true;
 }
 
-static bool ray_mesh(const struct scenery_mesh *mesh, const float m[16], const float from_m[3],
-		     const float direction[3], float least_m, float *distance_m)
+static bool ray_mesh(const struct scenery_mesh *mesh, const struct scenery_vertex *vertices,
+		     const float m[16], const float from_m[3], const float direction[3],
+		     float least_m, float *distance_m)
 {
 	bool found = false;
 	float model[16];
@@ -394,7 +412,7 @@ static bool ray_mesh(const struct scenery_mesh *mesh, const float m[16], const f
 		float corners[3][3];
 
 		for (int k = 0; k < 3; k++) {
-			const uint16_t *place = mesh->vertices[mesh->triangles[t][k]].place;
+			const uint16_t *place = vertices[mesh->triangles[t][k]].place;
 
 			for (int row = 0; row < 3; row++)
 				corners[k][row] = model[row] * place[0] +
@@ -417,7 +435,8 @@ uint32_t scenery_ray(const struct pose *pose, const float from_m[3], const float
 		float centre[3], radius = ball_of(mesh, node->matrix, centre);
 
 		if (node->high - node->low > 0.5f && is_near(from_m, direction, centre, radius) &&
-		    ray_mesh(mesh, node->matrix, from_m, direction, least_m, distance_m))
+		    ray_mesh(mesh, bend_vertices(&pose->bend, pose->scenery, i), node->matrix,
+			     from_m, direction, least_m, distance_m))
 			found = mesh->node;
 	}
 	return found;

@@ -11,6 +11,7 @@
 /* Where a mesh is in the buffers. */
 struct scenery_offset {
 	size_t vertex_bytes, index_bytes;
+	uint32_t bend_version; /* of the vertices that were uploaded */
 };
 
 /* Zeroed is empty: nothing is built before there is scenery. */
@@ -30,6 +31,8 @@ must_check int scenery_picture_load(struct scenery_picture *picture, const struc
  */
 must_check int scenery_picture_surround(struct scenery_picture *picture,
 					const struct appearance_cube *around);
+/* Uploads the vertices of meshes that motions bent or coloured since the last call. */
+void scenery_picture_bend(struct scenery_picture *picture, const struct pose *pose);
 /* Frees the meshes. */
 void scenery_picture_drop(struct scenery_picture *picture);
 /* Frees everything. */

@@ -1,5 +1,5 @@
-/* A roof in the second of two layers, and a door on a hinge that a touch opens: scenery for
- * tests. */
+/* A roof in the second of two layers, and a door on a hinge that a touch opens: scenery for tests.
+ * The roof may sag, and the door be dragged, where a test adds that. */
 #ifndef GOPURA_TESTS_FORMAT_LITTLE_SCENERY_H
 #define GOPURA_TESTS_FORMAT_LITTLE_SCENERY_H
 
@@ -16,6 +16,8 @@ struct little_scenery {
 	uint16_t triangles[2][2][3];
 	struct scenery_motion motion;
 	struct scenery_touch touch;
+	struct scenery_drag drag;
+	struct scenery_shape_vertex shapes[2][4];
 	struct scenery_track tracks[2];
 	float numbers[2 + 8 + 2 + 2];
 	struct scenery_layer layers[2];
@@ -87,11 +89,38 @@ static inline void little_scenery_init(struct little_scenery *s)
 				       .meshes = s->meshes,
 				       .motions = &s->motion,
 				       .touches = &s->touch,
+				       .drags = &s->drag,
 				       .tracks = s->tracks,
 				       .numbers = s->numbers,
 				       .layers = s->layers,
 				       .titles = s->titles,
 				       .fog = { .layer = SCENERY_NONE } };
+}
+
+/* A finger slides the door by up to half a metre along its width. */
+static inline void little_scenery_add_drag(struct little_scenery *s)
+{
+	s->drag = (struct scenery_drag){
+		.handle = 0, .node = 1, .kind = SCENERY_DRAG_PLANE, .keeps = true, .high = { 0.5f }
+	};
+	s->scenery.drag_count = 1;
+}
+
+/* Two shapes of the roof: as it is, and lower by 200 lattice steps of y, with other normals. */
+static inline void little_scenery_add_shapes(struct little_scenery *s)
+{
+	for (int shape = 0; shape < 2; shape++)
+		for (int v = 0; v < 4; v++) {
+			struct scenery_shape_vertex *to = &s->shapes[shape][v];
+
+			memcpy(to->place, s->vertices[1][v].place, sizeof(to->place));
+			memcpy(to->normal, s->vertices[1][v].normal, sizeof(to->normal));
+			to->place[1] = (uint16_t)(to->place[1] + 200 * shape);
+			to->normal[0] = (int8_t)(127 * shape);
+			to->normal[1] = (int8_t)(-127 * (1 - shape));
+		}
+	s->meshes[1].shape_count = 2;
+	s->meshes[1].shapes = s->shapes[0];
 }
 
 #endif

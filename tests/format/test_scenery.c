@@ -64,6 +64,30 @@ static void comes_back_as_it_went(void **state)
 	buffer_finish(&again);
 }
 
+static void shapes_and_drags_come_back_too(void **state)
+{
+	struct little_scenery s;
+	struct scenery back;
+	struct buffer bytes;
+
+	(void)state;
+	little_scenery_init(&s);
+	little_scenery_add_drag(&s);
+	little_scenery_add_shapes(&s);
+	s.drag.offset[2] = 0.25f;
+	s.drag.low[1] = -1;
+	s.drag.disc_rad = 0.5f;
+	s.tracks[1].target = SCENERY_SHAPE;
+	bytes = encoded(&s.scenery);
+	CHECK(scenery_decode(&back, buffer_bytes(&bytes)) == 0);
+	CHECK(back.drag_count == 1 && memcmp(back.drags, &s.drag, sizeof(s.drag)) == 0);
+	CHECK(back.meshes[0].shape_count == 0 && back.meshes[1].shape_count == 2);
+	CHECK(memcmp(back.meshes[1].shapes, s.shapes, sizeof(s.shapes)) == 0);
+	CHECK(scenery_sets(&back, 1, SCENERY_SHAPE) && !scenery_sets(&back, 1, SCENERY_COLOUR));
+	scenery_finish(&back);
+	buffer_finish(&bytes);
+}
+
 static void refuses_every_truncation_and_survives_every_bit(void **state)
 {
 	struct little_scenery s;
@@ -72,6 +96,8 @@ static void refuses_every_truncation_and_survives_every_bit(void **state)
 
 	(void)state;
 	little_scenery_init(&s);
+	little_scenery_add_drag(&s);
+	little_scenery_add_shapes(&s);
 	bytes = encoded(&s.scenery);
 	for (size_t n = 0; n < bytes.size; n++) {
 		uint8_t *exact = malloc(n ? n : 1);
@@ -175,8 +201,42 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	CHECK(!is_written(&s));
 	s.titles[2].text[0] = '\0';
 	CHECK(!is_written(&s));
+	s.tracks[1].target = SCENERY_SHAPE;
+	CHECK(is_written(&s));
+	s.tracks[1].target = SCENERY_SHAPE;
+	s.numbers[12] = SCENERY_SHAPES_MAX; /* no mesh has so many */
+	CHECK(!is_written(&s));
+	little_scenery_add_drag(&s);
+	CHECK(is_written(&s));
+	little_scenery_add_drag(&s);
+	s.drag.node = 3;
+	CHECK(!is_written(&s));
+	little_scenery_add_drag(&s);
+	s.drag.kind = SCENERY_DRAG_SPHERE; /* its offset is no turn */
+	CHECK(!is_written(&s));
+	little_scenery_add_drag(&s);
+	s.drag.disc_rad = 2;
+	CHECK(!is_written(&s));
+	little_scenery_add_drag(&s);
+	s.drag.high[1] = NAN;
+	CHECK(!is_written(&s));
 	memcpy(s.titles[2].text, "\xff\xfe", 3); /* not UTF-8 */
 	CHECK(!is_written(&s));
+}
+
+/* The glass of the fuzzer's corpus was written by the second version. */
+static void reads_what_was_published_before_there_were_shapes(void **state)
+{
+	struct scenery back;
+	struct buffer file;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	CHECK(buffer_read_file(&file, "tests/fuzz/corpus/scenery/glass") == 0);
+	CHECK(file.data[4] == 2 && scenery_decode(&back, buffer_bytes(&file)) == 0);
+	CHECK(back.mesh_count > 0 && back.drag_count == 0 && back.meshes[0].shape_count == 0);
+	scenery_finish(&back);
+	buffer_finish(&file);
 }
 
 /* The door of the fuzzer's corpus was written by the first version. */
@@ -202,6 +262,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(comes_back_as_it_went),
+		cmocka_unit_test(shapes_and_drags_come_back_too),
+		cmocka_unit_test(reads_what_was_published_before_there_were_shapes),
 		cmocka_unit_test(reads_what_was_published_before_there_were_materials),
 		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
 		cmocka_unit_test(what_breaks_a_rule_is_not_written),

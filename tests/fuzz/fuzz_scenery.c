@@ -26,7 +26,7 @@ static void decode(const uint8_t *data, size_t size)
 	scenery_finish(&back);
 }
 
-/* 'R', and what the frame holds; the first byte chooses between the versions. */
+/* 'R', and what the frame holds; the first byte chooses among the versions. */
 static void pack_and_decode(const uint8_t *data, size_t size)
 {
 	struct buffer object;
@@ -36,7 +36,8 @@ static void pack_and_decode(const uint8_t *data, size_t size)
 		return;
 	reader_init(&in, (struct bytes){ data + 2, size - 2 });
 	buffer_init(&object, REPACK_BYTES_MAX);
-	buffer_put(&object, data[1] & 1 ? "GPsy\1" : "GPsy\2", 5);
+	buffer_put(&object, "GPsy", 4);
+	buffer_put_u8(&object, data[1] & 1 ? 1 : data[1] & 2 ? 3 : 2);
 	buffer_put_u32(&object, (uint32_t)reader_left(&in));
 	repack_put(&object, &in, reader_left(&in));
 	decode(object.data, object.size);

@@ -2,7 +2,9 @@
 #include "render/scenery/pose.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "geometry/vec.h"
 #include "tests/check.h"
 #include "tests/format/little_scenery.h"
 
@@ -139,6 +141,112 @@ static void steps_and_single_keys_have_values(void **state)
 	CHECK(value == 0);
 }
 
+/* Two shapes, a colour and a glow over the door's motion, which runs always here. */
+static void meshes_bend_and_change_their_colours(void **state)
+{
+	static const float numbers[] = { 0, 1, 0, 1, /* the shape; then red to green, for two */
+					 0, 1, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 0 };
+	struct little_scenery s;
+	const struct scenery_vertex *roof;
+	struct pose pose;
+	uint32_t version;
+
+	(void)state;
+	little_scenery_init(&s);
+	little_scenery_add_shapes(&s);
+	s.scenery.touch_count = 0;
+	s.motion = (struct scenery_motion){ .duration_s = 2, .loops = true, .track_count = 3 };
+	struct scenery_track tracks[3] = {
+		{ .node = ROOF, .target = SCENERY_SHAPE, .key_count = 2 },
+		{ .node = ROOF, .target = SCENERY_COLOUR, .key_count = 2, .first = 4 },
+		{ .node = DOOR, .target = SCENERY_GLOW, .key_count = 2, .first = 12 }
+	};
+	s.scenery.tracks = tracks;
+	s.scenery.track_count = 3;
+	s.scenery.numbers = (float *)numbers;
+	s.scenery.number_count = 20;
+	CHECK(scenery_is_sane(&s.scenery));
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	CHECK(pose.bend.meshes[0].vertices == NULL); /* it only glows */
+	roof = bend_vertices(&pose.bend, &s.scenery, 1);
+	CHECK(roof[1].place[1] == 0 && roof[1].rgb[0] == 120 && roof[1].normal[1] == -127);
+	CHECK(pose_material(&pose, 0).emissive[0] == 0 && pose_material(&pose, 0).emissive[2] == 1);
+	run(&pose, 1000);
+	roof = bend_vertices(&pose.bend, &s.scenery, 1);
+	version = pose.bend.meshes[1].version;
+	CHECK(abs(roof[1].place[1] - 100) <= 1 && roof[1].place[0] == 1000);
+	CHECK(roof[1].normal[0] > 50 && roof[1].normal[1] < -50);
+	CHECK(abs(roof[1].rgb[0] - 128) <= 2 && abs(roof[1].rgb[1] - 128) <= 2 &&
+	      roof[1].rgb[2] == 0);
+	CHECK(abs(pose_material(&pose, 0).emissive[0] - 128) <= 2);
+	CHECK(pose_material(&pose, 1).emissive[2] == 0); /* the roof's own */
+	pose.motions[0].runs = false;
+	run(&pose, 1000);
+	CHECK(pose.bend.meshes[1].version == version); /* at rest nothing is done */
+	pose_finish(&pose);
+}
+
+/* The eye is 5 m before the sheets, which stand at y = 0. */
+static void pull(struct pose *pose, float x, float z)
+{
+	const float eye_m[3] = { 0, -5, 0 };
+	float direction[3] = { x, 5, z };
+
+	vec_normalise(direction);
+	pose_drag(pose, eye_m, direction);
+}
+
+static bool grab(struct pose *pose, uint32_t node, float x, float z)
+{
+	const float at_m[3] = { x, 0, z };
+	float direction[3] = { x, 5, z };
+
+	vec_normalise(direction);
+	return pose_grab(pose, node, at_m, direction);
+}
+
+/* The handle's x and y are the model's x and z, as a sheet stands. */
+static void what_a_finger_drags_follows_it(void **state)
+{
+	const float h = sqrtf(0.5f);
+	struct little_scenery s;
+	struct pose pose;
+
+	(void)state;
+	little_scenery_init(&s);
+	little_scenery_add_drag(&s);
+	s.nodes[0].place.turn[0] = s.nodes[0].place.turn[3] = h;
+	s.drag.low[1] = -1;
+	s.drag.high[1] = 1;
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	run(&pose, 700);
+	CHECK(!grab(&pose, ROOF, 0, 0) && pose.held == SCENERY_NONE);
+	CHECK(grab(&pose, DOOR, 0.1f, 0.2f) && pose.held == 0);
+	CHECK(!pose_moves(&pose)); /* until the finger moves */
+	pull(&pose, 0.3f, 0.3f);
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.2f) &&
+	      is_near(pose.places[DOOR].move_m[1], 0.1f) && pose.places[DOOR].move_m[2] == 0);
+	CHECK(pose_moves(&pose) && pose_step(&pose, 10) && !pose_moves(&pose));
+	pull(&pose, 3, 0.3f); /* it stops at its end, and comes back with the finger */
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.5f));
+	pull(&pose, 0.2f, 0.3f);
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.1f));
+	pose_let_go(&pose);
+	pull(&pose, 0.6f, 0.3f);
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.1f));
+	CHECK(grab(&pose, DOOR, 0, 0)); /* it goes on from where it was left */
+	pull(&pose, 0.1f, 0);
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.2f) &&
+	      is_near(pose.places[DOOR].move_m[1], 0.1f));
+	pose_reset(&pose); /* the visitor has gone, with a finger on the glass */
+	pull(&pose, 0.5f, 0);
+	CHECK(pose.places[DOOR].move_m[0] == 0 && pose_moves(&pose));
+	CHECK(grab(&pose, DOOR, 0, 0));
+	pull(&pose, 0.1f, 0);
+	CHECK(is_near(pose.places[DOOR].move_m[0], 0.1f));
+	pose_finish(&pose);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -147,6 +255,8 @@ int main(void)
 		cmocka_unit_test(layers_share_the_pixels_while_they_dissolve),
 		cmocka_unit_test(a_place_turns_and_scales_about_its_centre),
 		cmocka_unit_test(steps_and_single_keys_have_values),
+		cmocka_unit_test(meshes_bend_and_change_their_colours),
+		cmocka_unit_test(what_a_finger_drags_follows_it),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
