@@ -14,11 +14,12 @@ static const char help[] =
 	"gopura-content inspect: show what an object, a file or a release contains\n"
 	"\n"
 	"usage: gopura-content inspect FILE\n"
-	"       gopura-content inspect RELEASE [HASH ...] [--ca FILE]\n"
+	"       gopura-content inspect RELEASE [HASH ...] [--target PATH] [--ca FILE]\n"
 	"\n"
 	"FILE is a locator, a signed file, an object in a file of its own, an information database or a\n"
 	"picture. RELEASE is a folder or a URL: without HASH, shows its signed file, locator and first\n"
-	"pages; with HASH, shows that object, its page and its place in the packs.\n"
+	"pages; with HASH, shows that object, its page and its place in the packs. PATH is that of\n"
+	"its release among the targets of The Update Framework, where one server has several temples.\n"
 	"\n"
 	"Examples:\n"
 	"  gopura-content inspect release\n"
@@ -40,7 +41,8 @@ static int inspect_file(const char *path)
 	return rc < 0 ? 1 : 0;
 }
 
-static int inspect_place(const char *place, const char *ca_file, char **names, int name_count)
+static int inspect_place(const char *place, const char *ca_file, const char *target, char **names,
+			 int name_count)
 {
 	const struct release_reader_options options = { .place = place, .ca_file = ca_file };
 	struct release_reader *reader;
@@ -50,7 +52,7 @@ static int inspect_place(const char *place, const char *ca_file, char **names, i
 	if (rc < 0)
 		fprintf(stderr, "gopura-content inspect: %s: %s\n", place, strerror(-rc));
 	if (rc == 0 && name_count == 0)
-		rc = inspect_release(stdout, reader);
+		rc = inspect_release(stdout, reader, target);
 	for (int i = 0; rc == 0 && i < name_count; i++) {
 		rc = hash_from_hex(&object, names[i]);
 		if (rc < 0)
@@ -58,7 +60,7 @@ static int inspect_place(const char *place, const char *ca_file, char **names, i
 				"gopura-content inspect: %s: an object's name is 32 digits of 0-9 and a-f\n",
 				names[i]);
 		else
-			rc = inspect_object(stdout, reader, object);
+			rc = inspect_object(stdout, reader, target, object);
 	}
 	release_reader_destroy(reader);
 	return rc < 0 ? 1 : 0;
@@ -67,11 +69,12 @@ static int inspect_place(const char *place, const char *ca_file, char **names, i
 int command_inspect(int argc, char **argv)
 {
 	static const struct option options[] = {
+		{ "target", required_argument, NULL, 'T' },
 		{ "ca", required_argument, NULL, 'c' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
-	const char *ca_file = NULL, *place;
+	const char *ca_file = NULL, *target = NULL, *place;
 	struct stat info;
 	int option;
 
@@ -80,9 +83,9 @@ int command_inspect(int argc, char **argv)
 			fputs(help, stdout);
 			return 0;
 		}
-		if (option != 'c')
+		if (option != 'c' && option != 'T')
 			return 2;
-		ca_file = optarg;
+		*(option == 'c' ? &ca_file : &target) = optarg;
 	}
 	if (optind == argc) {
 		fputs("gopura-content inspect: name a file or a release; see --help\n", stderr);
@@ -91,5 +94,5 @@ int command_inspect(int argc, char **argv)
 	place = argv[optind++];
 	if (stat(place, &info) == 0 && !S_ISDIR(info.st_mode))
 		return inspect_file(place);
-	return inspect_place(place, ca_file, argv + optind, argc - optind);
+	return inspect_place(place, ca_file, target, argv + optind, argc - optind);
 }

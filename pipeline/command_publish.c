@@ -24,6 +24,10 @@ static const char help[] =
 	"  --undo           publish the previous release again, under a new number\n"
 	"  --sequence N     publish release N again, under a new number\n"
 	"  --renew          only sign a new timestamp, which is valid for 30 days\n"
+	"  --write-unsigned FOLDER\n"
+	"                   do not publish: write the metadata into FOLDER, to be signed elsewhere\n"
+	"  --add-signature FOLDER\n"
+	"                   publish what --write-unsigned wrote, with the signatures that were put there\n"
 	"\n"
 	"Needs hierarchy and samples (`build` makes everything). Objects are written first and the\n"
 	"signed files last, so terminals see either the whole old release or the whole new one.\n"
@@ -37,10 +41,14 @@ struct settings {
 	struct publish_content_options publish;
 	uint64_t sequence;
 	bool undo, renew;
+	const char *staged_folder; /* NULL: nothing was signed elsewhere */
 };
 
 static int publish(struct publish_content_report *report, const struct settings *settings)
 {
+	if (settings->staged_folder)
+		return publish_content_add_signatures(report, &settings->publish,
+						      settings->staged_folder);
 	if (settings->renew)
 		return publish_content_renew(report, &settings->publish);
 	if (settings->undo || settings->sequence)
@@ -66,7 +74,11 @@ static int run(struct settings *settings, const char *folder)
 		rc = publish(&report, settings);
 	if (rc == 0)
 		publish_content_print(stdout, &report);
-	else
+	if (rc == 0 && settings->publish.unsigned_folder)
+		printf("not published yet: sign each FILE.json in %s, or its FILE.json.bytes into "
+		       "FILE.json.NAME.sig, and run publish with --add-signature %s\n",
+		       settings->publish.unsigned_folder, settings->publish.unsigned_folder);
+	if (rc < 0)
 		fprintf(stderr, "gopura-content publish: nothing was published (%s)\n",
 			strerror(-rc));
 	if (lock >= 0)
@@ -86,6 +98,8 @@ int command_publish(int argc, char **argv)
 		{ "undo", no_argument, NULL, 'u' },
 		{ "sequence", required_argument, NULL, 's' },
 		{ "renew", no_argument, NULL, 'r' },
+		{ "write-unsigned", required_argument, NULL, 'w' },
+		{ "add-signature", required_argument, NULL, 'a' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -122,6 +136,12 @@ int command_publish(int argc, char **argv)
 		case 'r':
 			settings.renew = true;
 			break;
+		case 'w':
+			settings.publish.unsigned_folder = optarg;
+			break;
+		case 'a':
+			settings.staged_folder = optarg;
+			break;
 		case 'h':
 			fputs(help, stdout);
 			return 0;
@@ -131,8 +151,14 @@ int command_publish(int argc, char **argv)
 	}
 	if (optind + 1 != argc)
 		return command_wrong(argv[0], "name one content folder", "");
-	if (settings.undo + settings.renew + (settings.sequence > 0) > 1)
+	if (settings.undo + settings.renew + (settings.sequence > 0) +
+		    (settings.staged_folder != NULL) >
+	    1)
+		return command_wrong(
+			argv[0], "give only one of --undo, --sequence, --renew and --add-signature",
+			"");
+	if (settings.staged_folder && settings.publish.unsigned_folder)
 		return command_wrong(argv[0],
-				     "give give only one of --undo, --sequence and --renew", "");
+				     "give only one of --write-unsigned and --add-signature", "");
 	return run(&settings, argv[optind]);
 }

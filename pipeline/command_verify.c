@@ -14,10 +14,13 @@
 static const char help[] =
 	"gopura-content verify: check everything in a release\n"
 	"\n"
-	"usage: gopura-content verify URL|DIR [--trust root/1.json] [--ca FILE]\n"
+	"usage: gopura-content verify URL|DIR [--trust FILE] [--target PATH] [--ca FILE]\n"
 	"\n"
-	"  --trust FILE  the root that terminals were given; without it the release's own root is\n"
+	"  --trust FILE  the root that terminals were given, root/1.json or, to verify the form of The\n"
+	"                Update Framework alone, tuf/1.root.json; without it the release's own root is\n"
 	"                trusted, which shows that the release is complete but not whose it is\n"
+	"  --target PATH the release's path among the targets of The Update Framework\n"
+	"                (default: release.json)\n"
 	"  --ca FILE     certificate authority of an https server\n"
 	"\n"
 	"Checks signatures and expiry, the locator, the hash of every pack and object, that every page,\n"
@@ -98,10 +101,10 @@ static void print_report(const struct verify_report *report, bool trusted)
 	       trusted ? "" : " (against its own root; use --trust to check whose it is)");
 }
 
-static int verify(const char *place, const char *ca_file, const char *trust)
+static int verify(const char *place, const char *ca_file, const char *trust, const char *target)
 {
 	const struct release_reader_options reader = { .place = place, .ca_file = ca_file };
-	struct verify_options options = { .now_s = clock_wall_s() };
+	struct verify_options options = { .now_s = clock_wall_s(), .target = target };
 	struct verify_report report;
 	struct buffer root;
 	int rc;
@@ -133,17 +136,21 @@ int command_verify(int argc, char **argv)
 {
 	static const struct option options[] = {
 		{ "trust", required_argument, NULL, 't' },
+		{ "target", required_argument, NULL, 'T' },
 		{ "ca", required_argument, NULL, 'c' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
-	const char *trust = NULL, *ca_file = NULL;
+	const char *trust = NULL, *target = NULL, *ca_file = NULL;
 	int option;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
 		switch (option) {
 		case 't':
 			trust = optarg;
+			break;
+		case 'T':
+			target = optarg;
 			break;
 		case 'c':
 			ca_file = optarg;
@@ -156,7 +163,7 @@ int command_verify(int argc, char **argv)
 		}
 	}
 	if (optind + 1 == argc)
-		return verify(argv[optind], ca_file, trust);
+		return verify(argv[optind], ca_file, trust, target);
 	fputs("gopura-content verify: name one release, a URL or a folder; see --help\n", stderr);
 	return 2;
 }

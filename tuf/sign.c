@@ -4,9 +4,12 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <sodium.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "tuf/canonical.h"
+#include "tuf/key.h"
 
 _Static_assert(sizeof(((struct tuf_signer *)0)->public_key) == crypto_sign_PUBLICKEYBYTES &&
 		       sizeof(((struct tuf_signer *)0)->secret) == crypto_sign_SECRETKEYBYTES,
@@ -95,6 +98,22 @@ static void write_signature(struct buffer *out, const struct tuf_signer *signer,
 	buffer_print(out, "{\"keyid\":\"%s\",\"sig\":\"%s\"}", signer->id, hex);
 }
 
+/* Writes a canonical form as JSON for any reader: it has control characters as they are, such as
+ * the line ends of a key in PEM, and nothing but strings has any. */
+static void put_json(struct buffer *out, struct bytes canonical)
+{
+	size_t from = 0;
+
+	for (size_t i = 0; i < canonical.size; i++) {
+		if (canonical.data[i] >= ' ')
+			continue;
+		buffer_put(out, canonical.data + from, i - from);
+		buffer_print(out, "\\u%04x", canonical.data[i]);
+		from = i + 1;
+	}
+	buffer_put(out, canonical.data + from, canonical.size - from);
+}
+
 int tuf_sign(struct buffer *out, const cJSON *content, const struct tuf_signer *signers,
 	     uint32_t count)
 {
@@ -109,8 +128,83 @@ int tuf_sign(struct buffer *out, const cJSON *content, const struct tuf_signer *
 		write_signature(out, &signers[i], buffer_bytes(&message));
 	}
 	buffer_put_text(out, "],\"signed\":");
-	buffer_put(out, message.data, message.size);
+	put_json(out, buffer_bytes(&message));
 	buffer_put_text(out, "}\n");
 	buffer_finish(&message);
+	return rc < 0 ? rc : out->error;
+}
+
+/* ---- signatures that were made elsewhere */
+
+/* Returns the id of the role's key that made a signature in hexadecimal, borrowed, or NULL. */
+static const char *maker_of(const cJSON *keys, const cJSON *role, struct bytes message,
+			    const char *hex)
+{
+	const cJSON *id;
+	struct tuf_key_name name;
+
+	cJSON_ArrayForEach(id, cJSON_GetObjectItemCaseSensitive(role, "keyids"))
+	{
+		const char *text = cJSON_GetStringValue(id);
+		const cJSON *key = text ? cJSON_GetObjectItemCaseSensitive(keys, text) : NULL;
+
+		if (key && tuf_key_signed(key, message, hex, &name))
+			return text;
+	}
+	return NULL;
+}
+
+static void remove_of(cJSON *signatures, const char *id)
+{
+	for (int i = cJSON_GetArraySize(signatures) - 1; i >= 0; i--) {
+		const char *of = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(
+			cJSON_GetArrayItem(signatures, i), "keyid"));
+
+		if (of && strcmp(of, id) == 0)
+			cJSON_DeleteItemFromArray(signatures, i);
+	}
+}
+
+int tuf_add_signature(cJSON *signatures, const cJSON *keys, const cJSON *role, struct bytes message,
+		      struct bytes signature)
+{
+	const size_t room = 2 * signature.size + 1;
+	char *hex = malloc(room);
+	cJSON *entry = NULL;
+	const char *id;
+	int rc = -ENOMEM;
+
+	if (!hex)
+		return rc;
+	sodium_bin2hex(hex, room, signature.data, signature.size);
+	id = maker_of(keys, role, message, hex);
+	if (!id) {
+		rc = -EKEYREJECTED;
+	} else if ((entry = cJSON_CreateObject()) && cJSON_AddStringToObject(entry, "keyid", id) &&
+		   cJSON_AddStringToObject(entry, "sig", hex)) {
+		remove_of(signatures, id);
+		if (cJSON_AddItemToArray(signatures, entry)) {
+			entry = NULL;
+			rc = 0;
+		}
+	}
+	cJSON_Delete(entry);
+	free(hex);
+	return rc;
+}
+
+int tuf_write_signed(struct buffer *out, struct bytes message, const cJSON *signatures)
+{
+	struct buffer list;
+	int rc;
+
+	buffer_put_text(out, "{\"signatures\":");
+	buffer_init(&list, out->ceiling);
+	rc = canonical_write(&list, signatures);
+	put_json(out, buffer_bytes(&list));
+	buffer_finish(&list);
+	buffer_put_text(out, ",\"signed\":");
+	put_json(out, message);
+	buffer_put_text(out, "}\n");
 	return rc < 0 ? rc : out->error;
 }

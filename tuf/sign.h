@@ -1,5 +1,5 @@
-/* Signs metadata of The Update Framework with ed25519 keys, whose seeds are files of 32 bytes
- * (docs/release.md, Keys). */
+/* Writes signed metadata of The Update Framework: with ed25519 keys, whose seeds are files of 32
+ * bytes (docs/release.md, Keys), or with signatures that were made elsewhere. */
 #ifndef GOPURA_TUF_SIGN_H
 #define GOPURA_TUF_SIGN_H
 
@@ -30,5 +30,16 @@ struct cJSON *tuf_add_file(struct cJSON *to, const char *name, uint32_t version,
  * each signer. The same content and keys give the same bytes. Returns as canonical_write. */
 must_check int tuf_sign(struct buffer *out, const struct cJSON *content,
 			const struct tuf_signer *signers, uint32_t count);
+
+/* Adds a signature's bytes to signatures, an array, under the id of that of the role's keys which
+ * made it; one that the key has there already is replaced. message: the canonical form of the
+ * content. keys and role as for tuf_file_verify. Returns 0; -EKEYREJECTED: none of them made it;
+ * -ENOMEM. */
+must_check int tuf_add_signature(struct cJSON *signatures, const struct cJSON *keys,
+				 const struct cJSON *role, struct bytes message,
+				 struct bytes signature);
+/* Appends a whole file to out, as tuf_sign does. */
+must_check int tuf_write_signed(struct buffer *out, struct bytes message,
+				const struct cJSON *signatures);
 
 #endif

@@ -19,6 +19,8 @@ enum {
 	CONTENT_SCANS_MAX = MESH_SCANS_MAX,
 	CONTENT_LANGUAGES_MAX = 64,
 	CONTENT_LANGUAGE_BYTES = 12,
+	CONTENT_TARGET_BYTES = 97, /* what a terminal takes */
+	CONTENT_ROLE_BYTES = 65,
 };
 
 enum content_colours {
@@ -77,7 +79,10 @@ struct content {
 	uint32_t patch_triangles; /* 256..4000; 0: depends on the size of the scan */
 	uint32_t block_triangles; /* of the scan in one block, 2000..16000000; 0: the default */
 	double lattice_mm;        /* the largest step of the lattice, 0.05..100; 0: the default */
-	double publish_share;     /* share of the scan's triangles; above 0, at most 1 */
+	bool tuf_alone;           /* releases are in the form of The Update Framework alone */
+	/* Path among its targets, and the role that signs it; "": release.json, the top. */
+	char tuf_target[CONTENT_TARGET_BYTES], tuf_role[CONTENT_ROLE_BYTES];
+	double publish_share; /* share of the scan's triangles; above 0, at most 1 */
 	uint32_t language_count;
 	/* the first is the default */
 	char languages[CONTENT_LANGUAGES_MAX][CONTENT_LANGUAGE_BYTES];

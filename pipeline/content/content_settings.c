@@ -283,6 +283,45 @@ static bool set_languages(const struct setting *setting, void *target, const cha
 	return content->language_count > 0;
 }
 
+static bool set_metadata(const struct setting *setting, void *target, const char *value)
+{
+	struct content *content = target;
+
+	(void)setting;
+	content->tuf_alone = strcasecmp(value, "tuf") == 0;
+	return content->tuf_alone || strcasecmp(value, "both") == 0;
+}
+
+#define PATH_CHARS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-"
+
+/* A path without empty parts and parts that begin with a dot. */
+static bool set_target(const struct setting *setting, void *target, const char *value)
+{
+	struct content *content = target;
+	const size_t size = strlen(value);
+
+	(void)setting;
+	if (size == 0 || size >= sizeof(content->tuf_target) ||
+	    value[strspn(value, PATH_CHARS "/")] || *value == '.' || *value == '/' ||
+	    value[size - 1] == '/' || strstr(value, "//") || strstr(value, "/."))
+		return false;
+	memcpy(content->tuf_target, value, size + 1);
+	return true;
+}
+
+static bool set_role(const struct setting *setting, void *target, const char *value)
+{
+	struct content *content = target;
+	const size_t size = strlen(value);
+
+	(void)setting;
+	if (size == 0 || size >= sizeof(content->tuf_role) || *value == '.' ||
+	    value[strspn(value, PATH_CHARS)])
+		return false;
+	memcpy(content->tuf_role, value, size + 1);
+	return true;
+}
+
 #define SETTING(section, name, expects, set)                                                       \
 	{                                                                                          \
 		section, name, expects, set, 0, 0, 0, false, false                                 \
@@ -336,6 +375,13 @@ static const struct setting settings[CONTENT_SETTINGS] = {
 		lattice_mm, 0.05, 100),
 	NUMBERS("release", "publish_share", "a share above 0, at most 1", set_publish_share,
 		publish_share, 1e-6, 1),
+	SETTING("release", "metadata", "both, or tuf: the form of The Update Framework alone",
+		set_metadata),
+	SETTING("release", "target",
+		"a path of up to 96 letters, digits and ._-/, such as angkor/release.json",
+		set_target),
+	SETTING("release", "role", "a name of up to 64 letters, digits and ._-, such as angkor",
+		set_role),
 	SETTING("release", "languages", "language tags, separated by spaces: en fr km ja",
 		set_languages),
 };

@@ -4,7 +4,7 @@
 
 #include "pipeline/content/content.h"
 
-enum { CONTENT_SETTINGS = 26 };
+enum { CONTENT_SETTINGS = 29 };
 
 /* Returns the CONTENT_SETTINGS settings, whose target is a struct content. Its names of scans are
  * those in the file, not yet paths. */

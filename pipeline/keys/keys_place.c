@@ -365,7 +365,7 @@ static int open_at(struct publisher_keys *out, char folder[PATH_MAX], const char
 
 	memcpy(chosen, folder, PATH_MAX);
 	move_old(folder, content);
-	rc = load_or_make(out, folder, made);
+	rc = out ? load_or_make(out, folder, made) : 0;
 	if (rc == 0 && !is_given && strcmp(folder, chosen) == 0 &&
 	    (read_owner(owner, folder) < 0 || strcmp(owner, content) != 0)) {
 		rc = write_owner(folder, content);

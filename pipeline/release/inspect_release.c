@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "format/metadata.h"
 #include "pipeline/release/inspect.h"
+#include "pipeline/release/tuf_reading.h"
 
 enum { LOCATOR_BYTES_MAX = 256 << 20 };
 
@@ -22,6 +23,7 @@ struct place {
 struct walk {
 	FILE *to;
 	struct release_reader *reader;
+	const char *target; /* of The Update Framework; NULL: release.json */
 	struct locator locator;
 	struct release release;
 	struct place *places; /* owned; in breadth-first order */
@@ -35,6 +37,26 @@ static int complain(struct walk *walk, int rc, const char *text)
 	return rc;
 }
 
+/* Reads release.json where The Update Framework alone says which it is. */
+static int read_target(struct walk *walk, bool show)
+{
+	const struct bytes own = { NULL, 0 };
+	struct tuf_reading reading;
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = tuf_reading_release(&reading, walk->reader, own, walk->target, 0, &walk->release,
+				 &file);
+	if (rc < 0)
+		complain(walk, rc, reading.why);
+	else if (show)
+		rc = inspect_bytes(walk->to, buffer_bytes(&file));
+	tuf_reading_finish(&reading);
+	buffer_finish(&file);
+	return rc;
+}
+
 /* Reads release.json, trusting the release's own first root: to look, not to verify. */
 static int read_release(struct walk *walk, bool show)
 {
@@ -45,6 +67,11 @@ static int read_release(struct walk *walk, bool show)
 
 	buffer_init(&root, METADATA_FILE_BYTES_MAX);
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (walk->target || release_reader_file(walk->reader, "release.json", &file) == -ENOENT) {
+		buffer_finish(&root);
+		buffer_finish(&file);
+		return read_target(walk, show);
+	}
 	rc = release_reader_file(walk->reader, "root/1.json", &root);
 	if (rc == 0)
 		rc = trust_root_first(&trust, buffer_bytes(&root), &why);
@@ -176,9 +203,9 @@ static int look_among(struct walk *walk, const struct place *at, struct hash obj
 	return rc;
 }
 
-int inspect_object(FILE *to, struct release_reader *reader, struct hash object)
+int inspect_object(FILE *to, struct release_reader *reader, const char *target, struct hash object)
 {
-	struct walk walk = { .to = to, .reader = reader };
+	struct walk walk = { .to = to, .reader = reader, .target = target };
 	int rc = start(&walk, false);
 
 	if (rc == 0 && hash_equal(object, walk.release.root)) {
@@ -215,9 +242,9 @@ static int add_children(struct walk *walk, const struct place *root, struct byte
 	return rc;
 }
 
-int inspect_release(FILE *to, struct release_reader *reader)
+int inspect_release(FILE *to, struct release_reader *reader, const char *target)
 {
-	struct walk walk = { .to = to, .reader = reader };
+	struct walk walk = { .to = to, .reader = reader, .target = target };
 	int rc = start(&walk, true);
 
 	/* The root and its children. Hundreds of bricks are below them; ask for them by name. */

@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "pipeline/keys/keys_tuf.h"
+#include "pipeline/release/published.h"
 #include "pipeline/release/release_tuf.h"
 
 enum { DAY_S = 86400 };
@@ -47,10 +48,49 @@ static int64_t life_or(int64_t life_s, int days)
 	return life_s > 0 ? life_s : (int64_t)days * DAY_S;
 }
 
+static int64_t timestamp_life_s(const struct publish_target *target)
+{
+	return life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS);
+}
+
+/* Signs in the form of The Update Framework what the earlier form says. */
 static int sign_tuf(const struct publish_target *target, const struct release *release)
 {
-	return release_tuf_write(target->release, target->keys_folder, target->keys, release,
-				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+	const struct tuf_place place = published_place(target);
+	struct buffer file;
+	char path[PATH_MAX];
+	int rc = -ENAMETOOLONG;
+
+	if (keys_last_tuf_root(target->keys_folder) == 0)
+		return 0;
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (snprintf(path, sizeof(path), "%s/release.json", target->release) < (int)sizeof(path))
+		rc = buffer_read_file(&file, path);
+	if (rc < 0)
+		log_error("pipeline", "%s/release.json: %s", target->release, strerror(-rc));
+	else
+		rc = release_tuf_write(&place, release, buffer_bytes(&file),
+				       timestamp_life_s(target), NULL);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* Publishes in the form of The Update Framework alone, where the signature is of the targets. */
+static int sign_alone(const struct publish_target *target, const struct release *release)
+{
+	const struct tuf_place place = published_place(target);
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = release_encode(&file, release, NULL, 0);
+	if (rc == 0)
+		rc = release_tuf_write(&place, release, buffer_bytes(&file),
+				       timestamp_life_s(target), target->unsigned_folder);
+	if (rc == 0 && !target->unsigned_folder)
+		published_drop_earlier(target);
+	buffer_finish(&file);
+	return rc;
 }
 
 /* Signs and writes the files of the next release. */
@@ -72,10 +112,14 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 			  sizeof(release.comment) - 1);
 		return -EINVAL;
 	}
-	rc = release_files_write(target->release, target->keys_folder, target->keys, &release,
-				 life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
-	if (rc == 0)
-		rc = sign_tuf(target, &release);
+	if (target->tuf_alone) {
+		rc = sign_alone(target, &release);
+	} else {
+		rc = release_files_write(target->release, target->keys_folder, target->keys,
+					 &release, timestamp_life_s(target));
+		if (rc == 0)
+			rc = sign_tuf(target, &release);
+	}
 	if (rc == 0) {
 		report->release = release;
 		report->changed = true;
@@ -85,12 +129,23 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 
 int publish_renew(const struct publish_target *target)
 {
+	const struct tuf_place place = published_place(target);
 	struct release current;
-	int rc = release_files_renew(target->release, target->keys,
-				     life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS));
+	struct buffer file;
+	int rc;
 
+	if (target->tuf_alone) {
+		buffer_init(&file, METADATA_FILE_BYTES_MAX);
+		rc = published_file(&place, &current, &file);
+		if (rc == 0)
+			rc = release_tuf_write(&place, &current, buffer_bytes(&file),
+					       timestamp_life_s(target), target->unsigned_folder);
+		buffer_finish(&file);
+		return rc;
+	}
+	rc = release_files_renew(target->release, target->keys, timestamp_life_s(target));
 	if (rc == 0)
-		rc = release_files_current(&current, target->release, target->keys);
+		rc = published_current(target, &current);
 	return rc < 0 ? rc : sign_tuf(target, &current);
 }
 
@@ -171,7 +226,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 		rc = make_root(&page, objects, root, children, child_count);
 	if (rc < 0)
 		return rc;
-	rc = release_files_current(&before, target->release, target->keys);
+	rc = published_current(target, &before);
 	if (rc < 0 && rc != -ENOENT)
 		return rc;
 	report->release = before;
@@ -184,7 +239,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 		return rc;
 	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
 		return publish_renew(target);
-	return sign(report, target, &page, before.sequence + 1);
+	return sign(report, target, &page, published_next(target, before.sequence));
 }
 
 int publish_again(struct publish_report *report, const struct publish_target *target,
@@ -193,7 +248,7 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 	struct release current, again;
 	struct page_child root;
 	struct locator locator;
-	int rc = release_files_current(&current, target->release, target->keys);
+	int rc = published_current(target, &current);
 
 	*report = (struct publish_report){ 0 };
 	if (rc < 0) {
@@ -202,8 +257,8 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 				  target->release);
 		return rc;
 	}
-	rc = sequence ? release_files_at(&again, target->release, target->keys, sequence)
-		      : release_files_before(&again, target->release, target->keys, &current);
+	rc = sequence ? published_at(target, sequence, &again)
+		      : published_before(target, &current, &again);
 	if (rc == -ENOENT && sequence)
 		log_error("pipeline", "%s: there was no release %" PRIu64, target->release,
 			  sequence);
@@ -220,5 +275,5 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 		return rc;
 	}
 	root = (struct page_child){ .hash = again.root, .size = again.root_bytes };
-	return sign(report, target, &root, current.sequence + 1);
+	return sign(report, target, &root, published_next(target, current.sequence));
 }

@@ -5,6 +5,7 @@
 #include "format/root_page.h"
 #include "pipeline/release/pack.h"
 #include "pipeline/release/release_files.h"
+#include "pipeline/release/tuf_folder.h"
 
 enum {
 	RELEASE_LIFE_DAYS = 5 * 365, /* a terminal may be without network for years */
@@ -12,9 +13,15 @@ enum {
 };
 
 struct publish_target {
-	const char *release;     /* the release folder; created if needed */
-	const char *keys_folder; /* folder of `keys` */
-	const struct publisher_keys *keys;
+	const char *release;               /* the release folder; created if needed */
+	const char *keys_folder;           /* folder of `keys` */
+	const struct publisher_keys *keys; /* not used if tuf_alone */
+	bool tuf_alone;         /* in the form of The Update Framework alone (docs/tuf.md) */
+	const char *tuf_target; /* path among its targets; NULL or "": release.json */
+	const char *tuf_role;   /* of its targets; NULL or "": the top */
+	/* Where metadata of The Update Framework goes that is signed elsewhere; NULL: it is
+	 * published. With tuf_alone. */
+	const char *unsigned_folder;
 	const char *comment;    /* NULL: none. A changed comment alone also makes a new release. */
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 	int64_t timestamp_life_s; /* 0: TIMESTAMP_LIFE_DAYS */

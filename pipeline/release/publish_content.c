@@ -19,6 +19,8 @@
 #include "pipeline/release/publish_scenery.h"
 #include "pipeline/release/publish_solid.h"
 #include "pipeline/release/publish_stream.h"
+#include "pipeline/release/published.h"
+#include "pipeline/release/release_tuf.h"
 #include "pipeline/release/start_view.h"
 
 /* The target folder and the signing keys. */
@@ -31,8 +33,9 @@ struct destination {
 static int open_keys(struct destination *destination, const struct publish_content_options *options)
 {
 	bool made;
-	int rc = keys_open(&destination->keys, destination->keys_folder,
-			   sources_content(options->sources)->folder, options->keys, &made);
+	const struct content *content = sources_content(options->sources);
+	int rc = keys_open(content->tuf_alone ? NULL : &destination->keys, destination->keys_folder,
+			   content->folder, options->keys, &made);
 
 	if (rc == 0 && made)
 		log_info(
@@ -46,17 +49,28 @@ static int open_keys(struct destination *destination, const struct publish_conte
 static int destination_init(struct destination *destination, char release[PATH_MAX],
 			    const struct publish_content_options *options)
 {
-	const char *folder = sources_content(options->sources)->folder;
+	const struct content *content = sources_content(options->sources);
 	int size = options->out ? snprintf(release, PATH_MAX, "%s", options->out)
-				: snprintf(release, PATH_MAX, "%s/../release", folder);
+				: snprintf(release, PATH_MAX, "%s/../release", content->folder);
 
 	if (size >= PATH_MAX)
 		return -ENAMETOOLONG;
 	destination->target = (struct publish_target){ .release = release,
 						       .keys_folder = destination->keys_folder,
 						       .keys = &destination->keys,
+						       .tuf_alone = content->tuf_alone,
+						       .tuf_target = content->tuf_target,
+						       .tuf_role = content->tuf_role,
+						       .unsigned_folder = options->unsigned_folder,
 						       .comment = options->comment,
 						       .release_life_s = options->release_life_s };
+	if (!content->tuf_alone && (options->unsigned_folder || content->tuf_role[0])) {
+		log_error("pipeline",
+			  "%s/temple.ini: only releases in the form of The Update Framework alone "
+			  "can be signed elsewhere or by a role: metadata = tuf in [release]",
+			  content->folder);
+		return -EINVAL;
+	}
 	return open_keys(destination, options);
 }
 
@@ -277,14 +291,35 @@ static int look_at_current(struct publish_content_report *report,
 	*report = (struct publish_content_report){ 0 };
 	rc = destination_init(&destination, report->release, options);
 	if (rc == 0)
-		rc = release_files_current(&report->publish.release, report->release,
-					   &destination.keys);
+		rc = published_current(&destination.target, &report->publish.release);
 	if (rc == 0)
 		rc = measure(report);
 	if (rc == 0 && renew)
 		rc = publish_renew(&destination.target);
 	keys_finish(&destination.keys);
 	return rc;
+}
+
+int publish_content_add_signatures(struct publish_content_report *report,
+				   const struct publish_content_options *options,
+				   const char *staged_folder)
+{
+	struct destination destination = { 0 };
+	struct tuf_place place;
+	int rc;
+
+	*report = (struct publish_content_report){ 0 };
+	rc = destination_init(&destination, report->release, options);
+	place = published_place(&destination.target);
+	if (rc == 0)
+		rc = release_tuf_add_signatures(&place, staged_folder);
+	if (rc == 0) {
+		published_drop_earlier(&destination.target);
+		rc = published_current(&destination.target, &report->publish.release);
+	}
+	keys_finish(&destination.keys);
+	report->publish.changed = rc == 0;
+	return rc < 0 ? rc : measure(report);
 }
 
 int publish_content_current(struct publish_content_report *report,

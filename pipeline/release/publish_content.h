@@ -14,7 +14,9 @@ struct publish_content_options {
 	const char *out;         /* the release folder; NULL: "release" beside the content folder */
 	const char *keys;        /* the keys' folder; NULL: as pipeline/keys/keys_place.h says */
 	const char *comment;     /* NULL: none */
-	int64_t release_life_s;  /* 0: RELEASE_LIFE_DAYS */
+	/* Where metadata goes that is signed elsewhere; NULL: it is published. */
+	const char *unsigned_folder;
+	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 };
 
 struct publish_content_report {
@@ -47,6 +49,11 @@ must_check int publish_content_current(struct publish_content_report *report,
  * are missing. */
 must_check int publish_content_renew(struct publish_content_report *report,
 				     const struct publish_content_options *options);
+
+/* Publishes what was staged in a folder: see release_tuf_add_signatures. */
+must_check int publish_content_add_signatures(struct publish_content_report *report,
+					      const struct publish_content_options *options,
+					      const char *staged_folder);
 
 /* Prints for people: one line about the current release, one about what was written. */
 void publish_content_print(FILE *to, const struct publish_content_report *report);

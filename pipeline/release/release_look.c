@@ -9,6 +9,7 @@
 #include "format/root_page.h"
 #include "pipeline/release/pack.h"
 #include "pipeline/release/release_reader.h"
+#include "pipeline/release/tuf_folder.h"
 
 enum { ROOTS_MAX = 1000 };
 
@@ -49,7 +50,27 @@ int release_look_trust(struct trust_root *out, const char *folder)
 		rc = trust_root_first(out, buffer_bytes(&file), NULL);
 	if (rc == 0)
 		rc = follow_roots(out, &file, folder);
+	if (read_file(&file, folder, "release.json") == -ENOENT &&
+	    read_file(&file, folder, "tuf/1.root.json") == 0) {
+		*out = (struct trust_root){ .version = 0 };
+		rc = 0;
+	}
 	buffer_finish(&file);
+	return rc;
+}
+
+/* The roots of the release folder have the names of those in a keys' folder. */
+static int look_at_target(struct release *out, const char *folder, uint64_t sequence,
+			  struct buffer *file)
+{
+	const struct tuf_place place = { .release = folder, .keys_folder = folder };
+	struct tuf_folder tuf;
+	int rc = tuf_folder_open(&tuf, &place);
+
+	if (rc == 0)
+		rc = sequence > 0 ? tuf_folder_at(&tuf, sequence, out, file)
+				  : tuf_folder_current(&tuf, out, file);
+	tuf_folder_finish(&tuf);
 	return rc;
 }
 
@@ -64,6 +85,11 @@ int release_look_at(struct release *out, const char *folder, const struct trust_
 	if (sequence > 0)
 		snprintf(name, sizeof(name), "history/%" PRIu64 ".json", sequence);
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (trust->version == 0) {
+		rc = look_at_target(out, folder, sequence, &file);
+		buffer_finish(&file);
+		return rc;
+	}
 	rc = read_file(&file, folder, name);
 	if (rc == 0)
 		rc = release_decode(out, trust, buffer_bytes(&file), NULL);

@@ -6,8 +6,9 @@
 
 #include "format/metadata.h"
 
-/* Reads the chain of roots. -ENOENT: nothing was published there yet. -EBADMSG, -EKEYREJECTED, and
- * errors of reading. */
+/* Reads the chain of roots; version 0: the folder is in the form of The Update Framework alone
+ * (docs/tuf.md), of which the target release.json is looked at. -ENOENT: nothing was published
+ * there yet. -EBADMSG, -EKEYREJECTED, and errors of reading. */
 must_check int release_look_trust(struct trust_root *out, const char *folder);
 /* Reads release.json, or with a sequence above 0 that of the history. Errors likewise. */
 must_check int release_look_at(struct release *out, const char *folder,

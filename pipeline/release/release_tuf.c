@@ -3,19 +3,21 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/log.h"
 #include "pipeline/keys/keys_tuf.h"
 #include "pipeline/release/release_files.h"
+#include "pipeline/release/tuf_staged.h"
 #include "tuf/sign.h"
-
-enum { FILE_BYTES_MAX = 64 << 10 };
 
 static int complain(const char *release, const char *name, int rc)
 {
@@ -23,37 +25,106 @@ static int complain(const char *release, const char *name, int rc)
 	return rc;
 }
 
-static int make_folder(const char *release, const char *name)
+/* ---- the folder */
+
+/* Makes all folders of a path below the release. */
+static int make_folders(const char *release, const char *name)
 {
 	char path[PATH_MAX];
-
-	snprintf(path, sizeof(path), "%s/%s", release, name);
-	return mkdir(path, 0755) < 0 && errno != EEXIST ? complain(release, name, -errno) : 0;
-}
-
-static int read_file(struct buffer *out, const char *release, const char *name)
-{
-	char path[PATH_MAX];
+	size_t begin, at;
 
 	if (snprintf(path, sizeof(path), "%s/%s", release, name) >= (int)sizeof(path))
-		return -ENAMETOOLONG;
-	return buffer_read_file(out, path);
+		return complain(release, name, -ENAMETOOLONG);
+	begin = strlen(release) + 1;
+	do {
+		const char kept = path[at = begin + strcspn(path + begin, "/")];
+
+		path[at] = '\0';
+		if (mkdir(path, 0755) < 0 && errno != EEXIST)
+			return complain(release, name, -errno);
+		path[at] = kept;
+		begin = at + 1;
+	} while (path[at]);
+	return 0;
 }
 
-/* Signs a content, which is freed, into *file, cleared first, and writes it under that name. */
-static int put(const char *release, const char *name, struct buffer *file, cJSON *content,
-	       const struct signing_key *key)
+/* Returns a descriptor whose close unlocks the folder, or a negative errno. */
+static int lock(const char *release)
 {
-	struct tuf_signer signer;
-	int rc = content ? tuf_signer_init(&signer, key->secret) : -ENOMEM;
+	char path[PATH_MAX];
+	int fd;
 
-	buffer_clear(file);
-	if (rc == 0)
-		rc = tuf_sign(file, content, &signer, 1);
-	tuf_signer_finish(&signer);
-	cJSON_Delete(content);
-	return rc < 0 ? complain(release, name, rc)
-		      : release_files_put(release, name, buffer_bytes(file));
+	snprintf(path, sizeof(path), "%s/tuf", release);
+	fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (fd >= 0 && flock(fd, LOCK_EX) < 0)
+		log_debug("pipeline", "%s: cannot be locked: %s", path, strerror(errno));
+	return fd < 0 ? complain(release, "tuf", -errno) : fd;
+}
+
+static int copy_roots(const struct tuf_place *place)
+{
+	struct buffer file;
+	char name[64];
+	int rc = 0;
+
+	buffer_init(&file, TUF_FOLDER_FILE_BYTES_MAX);
+	for (uint32_t version = 1; rc == 0; version++) {
+		rc = keys_read_tuf_root(&file, place->keys_folder, version);
+		snprintf(name, sizeof(name), "tuf/%" PRIu32 ".root.json", version);
+		if (rc == 0)
+			rc = release_files_put(place->release, name, buffer_bytes(&file));
+		else if (rc != -ENOENT)
+			complain(place->keys_folder, name, rc);
+	}
+	buffer_finish(&file);
+	return rc == -ENOENT ? 0 : rc;
+}
+
+/* tuf/targets/FOLDER/SHA256.NAME */
+static int put_target(const struct tuf_place *place, struct bytes release_file)
+{
+	const char *path = tuf_folder_target(place), *slash = strrchr(path, '/');
+	const int before = slash ? (int)(slash + 1 - path) : 0;
+	cJSON *all = cJSON_CreateObject();
+	const cJSON *entry = tuf_add_file(all, "target", 0, release_file);
+	const cJSON *hash = cJSON_GetObjectItem(cJSON_GetObjectItem(entry, "hashes"), "sha256");
+	char name[PATH_MAX];
+	int rc = hash ? 0 : complain(place->release, "tuf/targets", -ENOMEM);
+
+	if (hash) {
+		snprintf(name, sizeof(name), "tuf/targets/%.*s", before, path);
+		name[strlen(name) - 1] = '\0';
+		rc = make_folders(place->release, name);
+		snprintf(name, sizeof(name), "tuf/targets/%.*s%s.%s", before, path,
+			 hash->valuestring, path + before);
+	}
+	cJSON_Delete(all);
+	return rc < 0 ? rc : release_files_put(place->release, name, release_file);
+}
+
+/* ---- contents */
+
+/* Returns a content of the next version with all other members of the last one; NULL: no memory. */
+static cJSON *next_content(const struct tuf_file *last, enum tuf_type type, uint32_t version,
+			   int64_t expires_s)
+{
+	cJSON *content = tuf_content(type, version, expires_s);
+	const cJSON *item, *members = last->json ? last->content : NULL;
+
+	cJSON_ArrayForEach(item, members)
+	{
+		cJSON *copy;
+
+		if (cJSON_GetObjectItemCaseSensitive(content, item->string))
+			continue;
+		copy = cJSON_Duplicate(item, true);
+		if (!cJSON_AddItemToObject(content, item->string, copy)) {
+			cJSON_Delete(copy);
+			cJSON_Delete(content);
+			return NULL;
+		}
+	}
+	return content;
 }
 
 static cJSON *drop_unless(cJSON *content, bool whole)
@@ -64,168 +135,330 @@ static cJSON *drop_unless(cJSON *content, bool whole)
 	return NULL;
 }
 
-/* ---- the files, from the target up */
-
-static cJSON *targets_of(const struct release *what, struct bytes release_file)
+/* Returns an object that is a member of content, which is made where there is none. */
+static cJSON *object_in(cJSON *content, const char *name)
 {
-	cJSON *content = tuf_content(TUF_TARGETS, (uint32_t)what->sequence, what->expires_s);
-	cJSON *all = cJSON_AddObjectToObject(content, "targets");
-	cJSON *target = tuf_add_file(all, "release.json", 0, release_file);
-	cJSON *custom = cJSON_AddObjectToObject(target, "custom");
+	cJSON *object = cJSON_GetObjectItemCaseSensitive(content, name);
+
+	return object ? object : cJSON_AddObjectToObject(content, name);
+}
+
+static cJSON *naming_content(const struct tuf_folder *folder, const struct release *what,
+			     struct bytes release_file)
+{
+	const char *target = tuf_folder_target(&folder->place);
+	cJSON *content = next_content(tuf_folder_naming(folder), TUF_TARGETS,
+				      (uint32_t)what->sequence, what->expires_s);
+	cJSON *all = object_in(content, "targets"), *custom;
 	char root[HASH_HEX_BYTES];
 
+	cJSON_DeleteItemFromObjectCaseSensitive(all, target);
+	custom = cJSON_AddObjectToObject(tuf_add_file(all, target, 0, release_file), "custom");
 	hash_to_hex(what->root, root);
 	return drop_unless(content, cJSON_AddStringToObject(custom, "root_page", root) &&
 					    cJSON_AddNumberToObject(custom, "root_page_bytes",
 								    what->root_bytes));
 }
 
-static cJSON *naming(enum tuf_type type, uint32_t version, int64_t expires_s, const char *name,
-		     uint32_t named, struct bytes file)
+/* Adds what a snapshot or timestamp says of a file. What is not signed yet has no length and hash
+ * that would stay, so its version must do. */
+static cJSON *naming(cJSON *content, const char *role, uint32_t version,
+		     const struct tuf_staged *file, bool is_whole)
 {
-	cJSON *content = tuf_content(type, version, expires_s);
-	cJSON *meta = cJSON_AddObjectToObject(content, "meta");
+	cJSON *meta = object_in(content, "meta"), *entry;
+	char name[PATH_MAX];
 
-	return drop_unless(content, tuf_add_file(meta, name, named, file) != NULL);
+	snprintf(name, sizeof(name), "%s.json", role);
+	cJSON_DeleteItemFromObjectCaseSensitive(meta, name);
+	if (is_whole)
+		entry = tuf_add_file(meta, name, version, buffer_bytes(&file->file));
+	else
+		entry = cJSON_AddNumberToObject(cJSON_AddObjectToObject(meta, name), "version",
+						version);
+	return drop_unless(content, entry != NULL);
 }
 
-static int copy_roots(const char *release, const char *keys_folder, struct buffer *file)
-{
-	char name[64];
-	int rc = 0;
+/* ---- the files, from the target up */
 
-	for (uint32_t version = 1; rc == 0; version++) {
-		rc = keys_read_tuf_root(file, keys_folder, version);
-		snprintf(name, sizeof(name), "tuf/%" PRIu32 ".root.json", version);
-		if (rc == -ENOENT)
-			return 0;
-		rc = rc < 0 ? complain(keys_folder, name, rc)
-			    : release_files_put(release, name, buffer_bytes(file));
-	}
+/* The three files of a release; snapshot and naming may be empty: those that are there stay. */
+struct next {
+	struct tuf_folder folder;
+	struct signing signing;
+	struct tuf_staged files[TUF_TYPES];
+	const char *unsigned_folder;
+	int64_t timestamp_life_s;
+};
+
+static int stage(struct next *next, enum tuf_type type, uint32_t version, cJSON *content)
+{
+	struct tuf_staged *staged = &next->files[type];
+	int rc = tuf_staged_init(staged, &next->folder, type, version, content);
+
+	if (rc == 0)
+		rc = tuf_staged_sign(staged, &next->signing);
+	if (rc == 0)
+		rc = tuf_staged_write(staged);
+	return rc == 0 && !next->unsigned_folder ? tuf_staged_check(staged) : rc;
+}
+
+static uint32_t last_snapshot(const struct tuf_folder *folder)
+{
+	const cJSON *meta =
+		folder->timestamp.json ? tuf_meta(&folder->timestamp, "snapshot.json") : NULL;
+
+	return meta ? tuf_meta_version(meta) : 0;
+}
+
+/* What others published must not be lost with a snapshot that cannot be trusted. */
+static int check_snapshot(const struct tuf_folder *folder)
+{
+	const cJSON *meta = cJSON_GetObjectItemCaseSensitive(folder->snapshot.content, "meta");
+
+	if (!folder->snapshot.json || folder->snapshot_is_signed || cJSON_GetArraySize(meta) < 2)
+		return 0;
+	log_error(
+		"pipeline",
+		"%s/tuf: the last snapshot is not signed with the keys of the newest root, and it "
+		"has files of other roles: sign it with these keys first",
+		folder->place.release);
+	return -EKEYREJECTED;
+}
+
+static int stage_release(struct next *next, const struct release *what, struct bytes release_file,
+			 uint32_t *snapshot)
+{
+	const struct tuf_file none = { .json = NULL };
+	const struct tuf_folder *folder = &next->folder;
+	const uint32_t last = last_snapshot(folder);
+	int rc = check_snapshot(folder);
+
+	*snapshot = last + 1 > what->sequence ? last + 1 : (uint32_t)what->sequence;
+	if (rc == 0)
+		rc = stage(next, TUF_TARGETS, (uint32_t)what->sequence,
+			   naming_content(folder, what, release_file));
+	if (rc == 0)
+		rc = stage(
+			next, TUF_SNAPSHOT, *snapshot,
+			naming(next_content(folder->snapshot_is_signed ? &folder->snapshot : &none,
+					    TUF_SNAPSHOT, *snapshot, what->expires_s),
+			       tuf_folder_naming_name(folder), (uint32_t)what->sequence,
+			       &next->files[TUF_TARGETS], !next->unsigned_folder));
 	return rc;
 }
 
-/* tuf/targets/SHA256.release.json; target: its entry */
-static int put_target(const char *release, const cJSON *targets, struct bytes release_file)
+/* Reads the snapshot that stays, so that the timestamp can name its bytes. */
+static int keep_snapshot(struct next *next, struct tuf_staged *out)
 {
-	const cJSON *all = cJSON_GetObjectItem(targets, "targets");
-	const cJSON *hashes =
-		cJSON_GetObjectItem(cJSON_GetObjectItem(all, "release.json"), "hashes");
-	char name[128];
+	char path[PATH_MAX];
 
-	snprintf(name, sizeof(name), "tuf/targets/%s.release.json",
-		 cJSON_GetObjectItem(hashes, "sha256")->valuestring);
-	return release_files_put(release, name, release_file);
+	buffer_init(&out->file, TUF_FOLDER_FILE_BYTES_MAX);
+	snprintf(path, sizeof(path), "%s/tuf/%" PRIu32 ".snapshot.json", next->folder.place.release,
+		 last_snapshot(&next->folder));
+	return buffer_read_file(&out->file, path);
 }
 
-/* Returns the version after that of the present timestamp; *snapshot is set to the version that it
- * names. Without one: 1, and 0. */
-static uint32_t next_timestamp(const char *release, struct buffer *file, uint32_t *snapshot)
+static int stage_timestamp(struct next *next, uint32_t snapshot)
 {
-	struct tuf_file timestamp = { 0 };
-	const char *why;
-	uint32_t version = 0;
-
-	*snapshot = 0;
-	if (read_file(file, release, "tuf/timestamp.json") == 0 &&
-	    tuf_file_parse(&timestamp, buffer_bytes(file), TUF_TIMESTAMP, &why) == 0) {
-		version = timestamp.version;
-		*snapshot = tuf_meta_version(tuf_meta(&timestamp, "snapshot.json"));
-	}
-	tuf_file_finish(&timestamp);
-	return version + 1;
-}
-
-/* Names a snapshot, whose bytes are in *file. */
-static int put_timestamp(const char *release, const struct publisher_keys *keys, uint32_t version,
-			 uint32_t snapshot, struct buffer *file, int64_t life_s)
-{
+	const struct tuf_file none = { .json = NULL };
 	const int64_t now_s = clock_wall_s();
-	cJSON *content = naming(TUF_TIMESTAMP, version, now_s + life_s, "snapshot.json", snapshot,
-				buffer_bytes(file));
+	const uint32_t version = next->folder.timestamp.version + 1;
+	struct tuf_staged kept = { .name = "" };
+	const bool is_new = next->files[TUF_SNAPSHOT].name[0] != '\0';
+	cJSON *content;
+	int rc = is_new ? 0 : keep_snapshot(next, &kept);
 
+	if (rc < 0) {
+		tuf_staged_finish(&kept);
+		return complain(next->folder.place.release, "tuf", rc);
+	}
+	content =
+		naming(next_content(&none, TUF_TIMESTAMP, version, now_s + next->timestamp_life_s),
+		       "snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
+		       !is_new || !next->unsigned_folder);
 	/* A member of ours, which other clients ignore: terminals know then that it is not earlier.
 	 */
 	if (content && !cJSON_AddNumberToObject(content, "issued_s", (double)now_s))
 		content = drop_unless(content, false);
-	return put(release, "tuf/timestamp.json", file, content, &keys->timestamp);
+	tuf_staged_finish(&kept);
+	return stage(next, TUF_TIMESTAMP, 0, content);
 }
 
-/* Reads the snapshot of a version, if there is one. */
-static bool has_snapshot(const char *release, uint32_t version, struct buffer *file)
+/* ---- writing them */
+
+/* In an order in which no reader finds a name before the file that it names. */
+static const enum tuf_type order[] = { TUF_TARGETS, TUF_SNAPSHOT, TUF_TIMESTAMP };
+
+static int put_all(const struct next *next)
 {
-	char name[64];
+	char name[160];
+	int rc = 0;
 
-	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".snapshot.json", version);
-	return read_file(file, release, name) == 0;
-}
+	for (size_t i = 0; i < ARRAY_COUNT(order) && rc == 0; i++) {
+		const struct tuf_staged *staged = &next->files[order[i]];
 
-/* Leaves the snapshot's bytes in *file. */
-static int put_new(const char *release, const struct publisher_keys *keys,
-		   const struct release *what, struct bytes release_file, struct buffer *file)
-{
-	const uint32_t version = (uint32_t)what->sequence;
-	cJSON *targets = targets_of(what, release_file);
-	char name[64];
-	int rc = targets ? put_target(release, targets, release_file)
-			 : complain(release, "tuf", -ENOMEM);
-
-	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".targets.json", version);
-	if (rc < 0)
-		cJSON_Delete(targets);
-	else
-		rc = put(release, name, file, targets, &keys->release);
-	snprintf(name, sizeof(name), "tuf/%" PRIu32 ".snapshot.json", version);
-	if (rc == 0)
-		rc = put(release, name, file,
-			 naming(TUF_SNAPSHOT, version, what->expires_s, "targets.json", version,
-				buffer_bytes(file)),
-			 &keys->release);
+		snprintf(name, sizeof(name), "tuf/%s", staged->name);
+		if (staged->name[0])
+			rc = release_files_put(next->folder.place.release, name,
+					       buffer_bytes(&staged->file));
+	}
 	return rc;
 }
 
-static int put_all(const char *release, const struct publisher_keys *keys,
-		   const struct release *what, struct bytes release_file, int64_t life_s,
-		   struct buffer *file)
+static int keep_all(const struct next *next)
 {
-	const uint32_t version = (uint32_t)what->sequence;
-	uint32_t before, next = next_timestamp(release, file, &before);
 	int rc = 0;
 
-	if (what->sequence > UINT32_MAX)
-		return complain(release, "tuf", -ERANGE);
-	/* A publisher that was killed may have left a timestamp of the release before. */
-	if (before != version || !has_snapshot(release, version, file))
-		rc = put_new(release, keys, what, release_file, file);
-	return rc < 0 ? rc : put_timestamp(release, keys, next, version, file, life_s);
+	for (size_t i = 0; i < ARRAY_COUNT(order) && rc == 0; i++)
+		if (next->files[order[i]].name[0])
+			rc = tuf_staged_keep(&next->files[order[i]], next->unsigned_folder);
+	return rc;
 }
 
-int release_tuf_write(const char *release, const char *keys_folder,
-		      const struct publisher_keys *keys, const struct release *what,
-		      int64_t timestamp_life_s)
+static void finish(struct next *next)
 {
-	struct buffer file, release_file;
-	int rc;
+	for (int type = 0; type < TUF_TYPES; type++)
+		tuf_staged_finish(&next->files[type]);
+	tuf_folder_finish(&next->folder);
+}
 
-	buffer_init(&file, FILE_BYTES_MAX);
-	buffer_init(&release_file, METADATA_FILE_BYTES_MAX);
-	rc = keys_read_tuf_root(&file, keys_folder, 1);
-	if (rc == -ENOENT) {
-		buffer_finish(&file);
-		return 0;
-	}
-	if (rc == 0 && (rc = read_file(&release_file, release, "release.json")) < 0)
-		complain(release, "release.json", rc);
-	if (rc == 0)
-		rc = make_folder(release, "tuf");
-	if (rc == 0)
-		rc = make_folder(release, "tuf/targets");
-	if (rc == 0)
-		rc = copy_roots(release, keys_folder, &file);
-	if (rc == 0)
-		rc = put_all(release, keys, what, buffer_bytes(&release_file), timestamp_life_s,
-			     &file);
-	buffer_finish(&release_file);
+/* Returns whether that release is published already, whole. */
+static bool is_current(const struct tuf_folder *folder, struct bytes release_file)
+{
+	struct release release;
+	struct buffer file;
+	bool same;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	same = folder->snapshot_is_signed && tuf_folder_naming(folder)->json &&
+	       tuf_folder_current(folder, &release, &file) == 0 &&
+	       bytes_equal(buffer_bytes(&file), release_file);
 	buffer_finish(&file);
+	return same;
+}
+
+static int make_all(struct next *next, const struct release *what, struct bytes release_file)
+{
+	const struct tuf_folder *folder = &next->folder;
+	uint32_t snapshot = last_snapshot(folder);
+	int rc = 0;
+
+	if (!is_current(folder, release_file)) {
+		if (what->sequence > UINT32_MAX ||
+		    what->sequence < tuf_folder_naming_version(folder))
+			return complain(folder->place.release, "tuf", -ERANGE);
+		rc = put_target(&folder->place, release_file);
+		if (rc == 0)
+			rc = stage_release(next, what, release_file, &snapshot);
+	}
+	return rc < 0 ? rc : stage_timestamp(next, snapshot);
+}
+
+/* Opens and locks the folder. */
+static int begin(struct next *next, const struct tuf_place *place, int *fd)
+{
+	int rc = make_folders(place->release, "tuf/targets");
+
+	*fd = rc < 0 ? rc : lock(place->release);
+	if (*fd < 0)
+		return *fd;
+	rc = signing_read(&next->signing, place->keys_folder);
+	return rc < 0 ? rc : tuf_folder_open(&next->folder, place);
+}
+
+int release_tuf_write(const struct tuf_place *place, const struct release *what,
+		      struct bytes release_file, int64_t timestamp_life_s,
+		      const char *unsigned_folder)
+{
+	struct next next = { .unsigned_folder = unsigned_folder,
+			     .timestamp_life_s = timestamp_life_s };
+	int fd, rc = begin(&next, place, &fd);
+
+	if (rc == 0)
+		rc = make_all(&next, what, release_file);
+	if (rc == 0)
+		rc = copy_roots(place);
+	if (rc == 0)
+		rc = unsigned_folder ? keep_all(&next) : put_all(&next);
+	finish(&next);
+	if (fd >= 0)
+		close(fd);
+	return rc;
+}
+
+/* ---- signatures that were made elsewhere */
+
+static int outdated(const char *folder, const char *name)
+{
+	log_error("pipeline",
+		  "%s/%s: something else was published since it was written: publish again with "
+		  "--write-unsigned",
+		  folder, name);
+	return -ESTALE;
+}
+
+/* Reads what was staged: a timestamp, and the snapshot and targets that it names where they are
+ * new. */
+static int read_staged(struct next *next, const char *staged_folder)
+{
+	const struct tuf_folder *folder = &next->folder;
+	struct tuf_staged *files = next->files;
+	struct tuf_file timestamp = { 0 }, snapshot = { 0 };
+	const char *why;
+	char name[PATH_MAX];
+	uint32_t version = 0, naming_version;
+	int rc = tuf_staged_read(&files[TUF_TIMESTAMP], folder, staged_folder, TUF_TIMESTAMP, 0);
+
+	if (rc == -ENOENT)
+		return complain(staged_folder, "timestamp.json", rc);
+	if (rc == 0)
+		rc = tuf_file_parse(&timestamp, buffer_bytes(&files[TUF_TIMESTAMP].file),
+				    TUF_TIMESTAMP, &why);
+	if (rc == 0 && timestamp.version <= folder->timestamp.version)
+		rc = outdated(staged_folder, "timestamp.json");
+	if (rc == 0)
+		version = tuf_meta_version(tuf_meta(&timestamp, "snapshot.json"));
+	tuf_file_finish(&timestamp);
+	if (rc < 0 || version == last_snapshot(folder))
+		return rc;
+	if (version < last_snapshot(folder))
+		return outdated(staged_folder, "timestamp.json");
+	rc = tuf_staged_read(&files[TUF_SNAPSHOT], folder, staged_folder, TUF_SNAPSHOT, version);
+	if (rc == -ENOENT)
+		complain(staged_folder, "the snapshot that timestamp.json names", rc);
+	if (rc == 0)
+		rc = tuf_file_parse(&snapshot, buffer_bytes(&files[TUF_SNAPSHOT].file),
+				    TUF_SNAPSHOT, &why);
+	if (rc < 0)
+		return rc;
+	snprintf(name, sizeof(name), "%s.json", tuf_folder_naming_name(folder));
+	naming_version =
+		tuf_meta(&snapshot, name) ? tuf_meta_version(tuf_meta(&snapshot, name)) : 0;
+	tuf_file_finish(&snapshot);
+	if (naming_version <= tuf_folder_naming_version(folder))
+		return outdated(staged_folder, name);
+	rc = tuf_staged_read(&files[TUF_TARGETS], folder, staged_folder, TUF_TARGETS,
+			     naming_version);
+	return rc == -ENOENT ? complain(staged_folder, name, rc) : rc;
+}
+
+int release_tuf_add_signatures(const struct tuf_place *place, const char *staged_folder)
+{
+	struct next next = { .unsigned_folder = NULL };
+	int fd, rc = begin(&next, place, &fd), lacking = 0;
+
+	if (rc == 0)
+		rc = read_staged(&next, staged_folder);
+	for (size_t i = 0; i < ARRAY_COUNT(order) && rc == 0; i++)
+		if (next.files[order[i]].name[0] && tuf_staged_check(&next.files[order[i]]) < 0)
+			lacking = -EKEYREJECTED;
+	if (rc == 0)
+		rc = lacking;
+	if (rc == 0)
+		rc = copy_roots(place);
+	if (rc == 0)
+		rc = put_all(&next);
+	finish(&next);
+	if (fd >= 0)
+		close(fd);
 	return rc;
 }

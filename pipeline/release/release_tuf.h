@@ -1,21 +1,35 @@
-/* The release in the form of The Update Framework (docs/tuf.md), beside its own signed files, where
- * the keys' folder has a tuf/1.root.json (pipeline/keys/keys_tuf.h):
+/* The release in the form of The Update Framework (docs/tuf.md):
  *
- *   tuf/N.root.json  tuf/timestamp.json  tuf/SEQUENCE.snapshot.json  tuf/SEQUENCE.targets.json
- *   tuf/targets/SHA256.release.json      the bytes of release.json, the one target
+ *   tuf/N.root.json  tuf/timestamp.json  tuf/N.snapshot.json  tuf/SEQUENCE.targets.json
+ *   tuf/targets/SHA256.release.json      the bytes of release.json
  *
- * The version of snapshot and targets is the release's sequence. Only the timestamp is ever
- * replaced, and it is written last. */
+ * or, where the targets delegate a path to a role of this temple,
+ *
+ *   tuf/SEQUENCE.ROLE.json  tuf/targets/FOLDER/SHA256.release.json
+ *
+ * Only the timestamp is ever replaced, and it is written last. What others published in the same
+ * folder (targets, delegations, versions in the snapshot) is carried on. One publisher at a time:
+ * the folder tuf is locked. */
 #ifndef GOPURA_PIPELINE_RELEASE_RELEASE_TUF_H
 #define GOPURA_PIPELINE_RELEASE_RELEASE_TUF_H
 
-#include "pipeline/keys/keys.h"
+#include "pipeline/release/tuf_folder.h"
 
-/* Brings all of it up to date with the release.json that is there, which says what: signs a new
- * timestamp, and the other files where they are of another release. Where the keys' folder has no
- * root for it, does nothing and returns 0. Errors are logged. */
-must_check int release_tuf_write(const char *release, const char *keys_folder,
-				 const struct publisher_keys *keys, const struct release *what,
-				 int64_t timestamp_life_s);
+/* Publishes release_file, the bytes of a release.json whose content is *what: signs a new
+ * timestamp, and the other files where the release is another one. They are signed as signing.ini
+ * of the keys' folder says (pipeline/keys/signing.h); nothing is written unless all of them have
+ * signatures enough.
+ *
+ * unsigned_folder, if not NULL, gets the files instead, with the signatures that there are, and
+ * beside each NAME.bytes, the bytes to be signed; release_tuf_add_signatures goes on from there.
+ * Errors are logged. */
+must_check int release_tuf_write(const struct tuf_place *place, const struct release *what,
+				 struct bytes release_file, int64_t timestamp_life_s,
+				 const char *unsigned_folder);
+
+/* Publishes what was staged in a folder, with the signatures of NAME.*.sig beside each file: see
+ * tuf_staged_read. -EKEYREJECTED: a file has too few signatures; nothing is published then.
+ * -ESTALE: something else was published since it was staged. Errors are logged. */
+must_check int release_tuf_add_signatures(const struct tuf_place *place, const char *staged_folder);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include "pipeline/release/verify_pages.h"
 #include "pipeline/release/verify_tuf.h"
+#include "tuf/tuf_metadata.h"
 
 enum { ROOTS_MAX = 1000, LOCATOR_BYTES_MAX = 256 << 20 };
 
@@ -83,12 +84,34 @@ static int read_release(struct verify_walk *walk, struct buffer *file)
 	return 0;
 }
 
+/* Returns whether the release is to be verified in the form of The Update Framework alone. */
+static bool is_tuf_alone(struct verify_walk *walk, struct bytes trusted, struct buffer *file)
+{
+	struct tuf_file root = { 0 };
+	const char *why;
+	bool is_root;
+
+	if (trusted.size == 0)
+		return release_reader_file(walk->reader, "release.json", file) == -ENOENT &&
+		       release_reader_file(walk->reader, "tuf/1.root.json", file) == 0;
+	is_root = tuf_root_first(&root, trusted, &why) == 0;
+	tuf_file_finish(&root);
+	return is_root;
+}
+
 static int read_metadata(struct verify_walk *walk, const struct verify_options *options)
 {
 	struct buffer file;
 	int rc;
 
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (is_tuf_alone(walk, options->trusted_root, &file)) {
+		buffer_finish(&file);
+		rc = verify_tuf_alone(walk, options->trusted_root, options->target, options->now_s);
+		return rc < 0 ? rc
+			      : check_expiry(walk, options->now_s, "release.json",
+					     walk->report->release.expires_s);
+	}
 	rc = read_roots(walk, options->trusted_root, &file);
 	if (rc == 0)
 		rc = check_expiry(walk, options->now_s, "the newest root",

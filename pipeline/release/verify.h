@@ -9,8 +9,11 @@
 
 struct verify_options {
 	struct release_reader *reader;
-	struct bytes trusted_root; /* root/1.json from a trusted source; empty: the release's own */
-	int64_t now_s;             /* the time for expiry checks, seconds since 1970; 0: no check */
+	/* root/1.json or tuf/1.root.json from a trusted source; empty: the release's own, in the
+	 * earlier form where it has one */
+	struct bytes trusted_root;
+	const char *target; /* of The Update Framework: the release's path; NULL: release.json */
+	int64_t now_s;      /* the time for expiry checks, seconds since 1970; 0: no check */
 };
 
 /* Returns 0 if everything is correct. Otherwise report->diagnostics has the first error, and the

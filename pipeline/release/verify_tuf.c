@@ -1,72 +1,29 @@
-/* The client workflow over the release's reader, with nothing stored but the first root. */
+/* Compares what the client workflow finds with the other signed files, or takes it in their place.
+ */
 #include "pipeline/release/verify_tuf.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "tuf/targets.h"
+#include "pipeline/release/tuf_reading.h"
 
-struct source {
-	struct verify_walk *walk;
-	struct buffer root; /* tuf/1.root.json */
-};
-
-static int fetch(void *context, const char *name, struct buffer *out)
+static int complain(struct verify_walk *walk, int rc, const char *why)
 {
-	struct source *source = context;
-	char path[256];
-
-	if (snprintf(path, sizeof(path), "tuf/%s", name) >= (int)sizeof(path))
-		return -ENAMETOOLONG;
-	return release_reader_file(source->walk->reader, path, out);
-}
-
-static int load(void *context, const char *name, struct buffer *out)
-{
-	const struct source *source = context;
-
-	if (strcmp(name, "root.json") != 0)
-		return -ENOENT;
-	buffer_put(out, source->root.data, source->root.size);
-	return out->error;
-}
-
-static int store(void *context, const char *name, struct bytes file)
-{
-	(void)context;
-	(void)name;
-	(void)file;
-	return 0;
-}
-
-static int compare(struct tuf_client *client, struct bytes release_file, const char **why)
-{
-	struct tuf_target target;
-	int rc = tuf_client_find(client, "release.json", &target);
-
-	if (rc == 0 && !tuf_target_is(&target, release_file)) {
-		rc = -EBADMSG;
-		*why = "its target is another release.json";
-	}
-	tuf_target_finish(&target);
-	return rc;
+	return diagnostics_add(&walk->report->diagnostics, rc, "tuf", 0, "%s", why);
 }
 
 int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_s)
 {
-	struct source source = { .walk = walk };
-	const struct tuf_io io = { &source, fetch, load, store };
-	struct tuf_client client = { 0 };
-	const char *why = client.why;
+	const uint32_t last = walk->report->release.tuf_root;
+	const struct bytes own = { NULL, 0 };
+	struct tuf_reading reading;
+	struct buffer file;
 	int rc;
 
-	buffer_init(&source.root, METADATA_FILE_BYTES_MAX);
-	rc = release_reader_file(walk->reader, "tuf/1.root.json", &source.root);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = release_reader_file(walk->reader, "tuf/1.root.json", &file);
 	if (rc == -ENOENT) { /* not signed in this form */
-		const uint32_t last = walk->report->release.tuf_root;
-
-		buffer_finish(&source.root);
+		buffer_finish(&file);
 		return last == 0 ? 0
 				 : diagnostics_add(&walk->report->diagnostics, -ENOENT, "tuf", 0,
 						   "release.json says that there are roots up to "
@@ -74,16 +31,32 @@ int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_
 						   "publish again",
 						   last);
 	}
+	buffer_clear(&file);
+	rc = tuf_reading_release(&reading, walk->reader, own, NULL, now_s, NULL, &file);
 	if (rc < 0)
-		why = release_reader_why(walk->reader);
-	else
-		rc = tuf_client_refresh(&client, &io, now_s > 0 ? now_s : 1);
-	if (rc == 0)
-		rc = compare(&client, release_file, &why);
+		complain(walk, rc, reading.why);
+	else if (!bytes_equal(buffer_bytes(&file), release_file))
+		rc = complain(walk, -EBADMSG, "its target is another release.json");
+	tuf_reading_finish(&reading);
+	buffer_finish(&file);
+	return rc;
+}
+
+int verify_tuf_alone(struct verify_walk *walk, struct bytes root, const char *target, int64_t now_s)
+{
+	struct verify_report *report = walk->report;
+	struct tuf_reading reading;
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = tuf_reading_release(&reading, walk->reader, root, target, now_s, &report->release,
+				 &file);
 	if (rc < 0)
-		diagnostics_add(&walk->report->diagnostics, rc == -ETIME ? -EKEYEXPIRED : rc, "tuf",
-				0, "%s", why);
-	tuf_client_finish(&client);
-	buffer_finish(&source.root);
+		complain(walk, rc, reading.why);
+	report->trust.expires_s = reading.client.root.expires_s;
+	report->timestamp.expires_s = reading.client.timestamp.expires_s;
+	tuf_reading_finish(&reading);
+	buffer_finish(&file);
 	return rc;
 }

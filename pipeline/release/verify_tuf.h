@@ -10,4 +10,9 @@
  * diagnostics say what is wrong. */
 must_check int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_s);
 
+/* Verifies a release that is in this form alone, and fills the report's release and expiry times.
+ * root: the first one, trusted; empty: the release's own. target: its path; NULL: release.json. */
+must_check int verify_tuf_alone(struct verify_walk *walk, struct bytes root, const char *target,
+				int64_t now_s);
+
 #endif

@@ -8,6 +8,8 @@
     rename FILE FILE           the same content under another name
     chain                      makes timestamp and snapshot name the files that are there
     delegate ROLE              the targets become those of a role whose key is KEYS/ROLE.key
+    temples ROLE...            a new repository whose targets delegate ROLE/* to each ROLE, with the key KEYS/ROLE.key
+    adopt ROLE=FILE...         the next root, in which the only key of ROLE is the public key of a file in PEM
     root MEMBER=JSON...        the next root, signed by root.key, into KEYS/tuf and RELEASE/tuf
 
 FILE is below RELEASE/tuf. Keys are files of KEYS: root.key, release.key, timestamp.key.
@@ -20,6 +22,11 @@ KEY_OF = {"root": "root", "timestamp": "timestamp", "snapshot": "release", "targ
 
 
 def canonical(value):
+    # canonical JSON has line ends, which a key in PEM has, as they are
+    return written(value).replace(rb"\n", b"\n")
+
+
+def written(value):
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False).encode()
 
 
@@ -39,7 +46,7 @@ class Key:
 
 def signed(content, *names):
     message = canonical(content)
-    return canonical({"signed": content, "signatures": [Key(keys / f"{name}.key").sign(message) for name in names]})
+    return written({"signed": content, "signatures": [Key(keys / f"{name}.key").sign(message) for name in names]})
 
 
 def change(content, changes):
@@ -114,6 +121,49 @@ def delegate(role):
     chain()
 
 
+def expiring(kind):
+    return {"_type": kind, "spec_version": "1.0.34", "version": 1, "expires": "2040-01-01T00:00:00Z"}
+
+
+def temples(*roles):
+    own = {role: Key(keys / f"{role}.key") for role in roles}
+    delegations = {
+        "keys": {key.id: key.entry for key in own.values()},
+        "roles": [
+            {"name": role, "keyids": [own[role].id], "threshold": 1, "paths": [f"{role}/*"], "terminating": True}
+            for role in roles
+        ],
+    }
+    tuf.mkdir(parents=True, exist_ok=True)
+    put(tuf / "1.targets.json", signed({**expiring("targets"), "targets": {}, "delegations": delegations}, "release"))
+    meta = {"targets.json": describe(tuf / "1.targets.json", 1)}
+    put(tuf / "1.snapshot.json", signed({**expiring("snapshot"), "meta": meta}, "release"))
+    meta = {"snapshot.json": describe(tuf / "1.snapshot.json", 1)}
+    put(tuf / "timestamp.json", signed({**expiring("timestamp"), "meta": meta}, "timestamp"))
+
+
+# Signed by root.key; into KEYS/tuf alone, from where `publish` copies it.
+def adopt(*pairs):
+    last = max((keys / "tuf").glob("*.root.json"), key=lambda path: int(path.name.split(".")[0]))
+    content = content_of(last)
+    content["version"] += 1
+    for pair in pairs:
+        role, path = pair.split("=")
+        text = pathlib.Path(path).read_text()
+        is_rsa = len(text) > 300
+        entry = {
+            "keytype": "rsa" if is_rsa else "ecdsa",
+            "scheme": "rsassa-pss-sha256" if is_rsa else "ecdsa-sha2-nistp256",
+            "keyval": {"public": text},
+        }
+        name = hashlib.sha256(canonical(entry)).hexdigest()
+        content["keys"][name] = entry
+        content["roles"][role] = {"keyids": [name], "threshold": 1}
+    used = {one for role in content["roles"].values() for one in role["keyids"]}
+    content["keys"] = {one: entry for one, entry in content["keys"].items() if one in used}
+    put(keys / "tuf" / f"{content['version']}.root.json", signed(content, "root"))
+
+
 def root(*changes):
     last = newest("root")
     content = content_of(last)
@@ -132,4 +182,6 @@ def root(*changes):
 
 
 command, *arguments = sys.argv[3:]
-{"set": set_members, "rename": rename, "chain": chain, "delegate": delegate, "root": root}[command](*arguments)
+commands = {"set": set_members, "rename": rename, "chain": chain, "delegate": delegate, "root": root}
+commands |= {"temples": temples, "adopt": adopt}
+commands[command](*arguments)

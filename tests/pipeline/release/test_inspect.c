@@ -42,7 +42,7 @@ static bool says(const char *words)
 static void a_release_is_shown_from_the_top(void **state)
 {
 	(void)state;
-	CHECK(inspect_release(to, reader) == 0);
+	CHECK(inspect_release(to, reader, NULL) == 0);
 	CHECK(says("\"the first\""));
 	CHECK(says("signed by"));
 	CHECK(says("4 published of 40, 10.00 %"));
@@ -72,11 +72,11 @@ static void an_object_is_found_by_its_name(void **state)
 	struct hash hash;
 
 	(void)state;
-	CHECK(inspect_release(to, reader) == 0);
+	CHECK(inspect_release(to, reader, NULL) == 0);
 	hash = hash_before("bytes  page"); /* the last page that is a child */
-	CHECK(inspect_object(to, reader, hash) == 0);
+	CHECK(inspect_object(to, reader, NULL, hash) == 0);
 	CHECK(says("in packs/"));
-	CHECK(inspect_object(to, reader, (struct hash){ { 1, 2 } }) == -ENOENT);
+	CHECK(inspect_object(to, reader, NULL, (struct hash){ { 1, 2 } }) == -ENOENT);
 	CHECK(says("has no object of that name"));
 }
 

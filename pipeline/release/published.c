@@ -1,0 +1,120 @@
+/* Chooses between the signed files of a release folder. */
+#include "pipeline/release/published.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include "base/log.h"
+#include "pipeline/keys/keys_tuf.h"
+
+struct tuf_place published_place(const struct publish_target *target)
+{
+	return (struct tuf_place){ .release = target->release,
+				   .keys_folder = target->keys_folder,
+				   .target = target->tuf_target,
+				   .role = target->tuf_role };
+}
+
+int published_file(const struct tuf_place *place, struct release *out, struct buffer *file)
+{
+	struct tuf_folder folder;
+	int rc = tuf_folder_open(&folder, place);
+
+	if (rc == 0)
+		rc = tuf_folder_current(&folder, out, file);
+	else if (rc == -ENOENT)
+		rc = -ENOKEY; /* logged; not the same as that nothing was published */
+	tuf_folder_finish(&folder);
+	return rc;
+}
+
+int published_current(const struct publish_target *target, struct release *out)
+{
+	const struct tuf_place place = published_place(target);
+	struct buffer file;
+	int rc;
+
+	*out = (struct release){ 0 };
+	if (!target->tuf_alone)
+		return release_files_current(out, target->release, target->keys);
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	rc = published_file(&place, out, &file);
+	buffer_finish(&file);
+	return rc;
+}
+
+/* Reads the release of a version, or with before the newest one below it with another root. */
+static int look_back(const struct tuf_place *place, uint64_t version, const struct release *before,
+		     struct release *out)
+{
+	struct tuf_folder folder;
+	struct buffer file;
+	int rc = tuf_folder_open(&folder, place);
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (rc == 0 && !before) {
+		rc = tuf_folder_at(&folder, version, out, &file);
+	} else if (rc == 0) {
+		rc = -ENOENT;
+		while (rc == -ENOENT && --version > 0) {
+			rc = tuf_folder_at(&folder, version, out, &file);
+			if (rc == 0 && hash_equal(out->root, before->root))
+				rc = -ENOENT;
+		}
+	}
+	buffer_finish(&file);
+	tuf_folder_finish(&folder);
+	return rc;
+}
+
+int published_at(const struct publish_target *target, uint64_t sequence, struct release *out)
+{
+	const struct tuf_place place = published_place(target);
+
+	if (!target->tuf_alone)
+		return release_files_at(out, target->release, target->keys, sequence);
+	return look_back(&place, sequence, NULL, out);
+}
+
+int published_before(const struct publish_target *target, const struct release *current,
+		     struct release *out)
+{
+	const struct tuf_place place = published_place(target);
+
+	if (!target->tuf_alone)
+		return release_files_before(out, target->release, target->keys, current);
+	return look_back(&place, current->sequence, current, out);
+}
+
+/* A terminal that still reads the earlier form would take what stays of it for the newest release,
+ * until it expires. */
+void published_drop_earlier(const struct publish_target *target)
+{
+	static const char *const names[] = { "timestamp.json", "release.json" };
+	char path[PATH_MAX];
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (snprintf(path, sizeof(path), "%s/%s", target->release, names[i]) <
+			    (int)sizeof(path) &&
+		    unlink(path) == 0)
+			log_info("pipeline",
+				 "removed %s: releases are in the form of The Update Framework "
+				 "alone from now on",
+				 path);
+}
+
+uint64_t published_next(const struct publish_target *target, uint64_t current)
+{
+	const struct tuf_place place = published_place(target);
+	struct tuf_folder folder;
+
+	if (keys_last_tuf_root(target->keys_folder) > 0) {
+		if (tuf_folder_open(&folder, &place) == 0 &&
+		    tuf_folder_naming_version(&folder) > current)
+			current = tuf_folder_naming_version(&folder);
+		tuf_folder_finish(&folder);
+	}
+	return current + 1;
+}

@@ -1,0 +1,58 @@
+/* What a release folder holds of The Update Framework, for the publisher: the files that a terminal
+ * would read, checked against the newest root of the keys' folder. Expiry is not judged: what has
+ * expired is what a publisher signs anew. */
+#ifndef GOPURA_PIPELINE_RELEASE_TUF_FOLDER_H
+#define GOPURA_PIPELINE_RELEASE_TUF_FOLDER_H
+
+#include "pipeline/keys/keys.h"
+#include "tuf/tuf_metadata.h"
+
+enum { TUF_FOLDER_FILE_BYTES_MAX = 64 << 10 /* what terminals take */ };
+
+/* Where a content folder's release is published; strings are borrowed. */
+struct tuf_place {
+	const char *release;     /* the release folder */
+	const char *keys_folder; /* has tuf/1.root.json and those after it */
+	const char *target;      /* path among the targets; "": release.json */
+	const char *role; /* to which the top's targets delegate the path; "": the top itself */
+};
+
+struct tuf_folder {
+	struct tuf_place place;
+	struct tuf_file root;
+	/* Empty where there is none yet. Timestamp and snapshot may be signed by keys that the root
+	 * does not name any more; snapshot_is_signed says so of the snapshot. */
+	struct tuf_file timestamp, snapshot;
+	bool snapshot_is_signed;
+	struct tuf_file top, own; /* targets.json; the role's file, empty for the top itself */
+	/* The versions that were published last, also of files that the root's keys have not
+	 * signed; 0: none. */
+	uint32_t top_version, own_version;
+};
+
+/* Reads it. Nothing may be there but a root in the keys' folder. Returns 0; -ENOENT: no root;
+ * -EKEYREJECTED: the root's keys have not signed what must be carried on; -EBADMSG. Errors are
+ * logged. tuf_folder_finish frees it, also after a failure. */
+must_check int tuf_folder_open(struct tuf_folder *out, const struct tuf_place *place);
+void tuf_folder_finish(struct tuf_folder *folder);
+
+/* The path of the target, never empty. */
+const char *tuf_folder_target(const struct tuf_place *place);
+/* The file that names the release: the role's, or that of the top. Its content may be empty. */
+const struct tuf_file *tuf_folder_naming(const struct tuf_folder *folder);
+uint32_t tuf_folder_naming_version(const struct tuf_folder *folder);
+/* Name of that file without its version, "targets" or the role's. */
+const char *tuf_folder_naming_name(const struct tuf_folder *folder);
+/* Which keys may sign it, as tuf_file_verify takes them. */
+void tuf_folder_naming_keys(const struct tuf_folder *folder, const struct cJSON **keys,
+			    const struct cJSON **role);
+
+/* Reads the release that is published now into *out and its release.json into *file, cleared first.
+ * -ENOENT: none is. Other errors are logged. */
+must_check int tuf_folder_current(const struct tuf_folder *folder, struct release *out,
+				  struct buffer *file);
+/* The same for an earlier version of the file that names the release. -ENOENT: there is none. */
+must_check int tuf_folder_at(const struct tuf_folder *folder, uint64_t version, struct release *out,
+			     struct buffer *file);
+
+#endif

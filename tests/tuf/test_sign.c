@@ -1,0 +1,149 @@
+/* Signatures by keys of every kind, and the files that are made of them. */
+#include "tuf/sign.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <openssl/ec.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/rsa.h>
+#include <string.h>
+
+#include "tests/check.h"
+#include "tuf/canonical.h"
+#include "tuf/private_key.h"
+
+static const struct bytes message = { (const uint8_t *)"{\"version\":1}", 13 };
+
+/* A key with its private and public half in PEM. */
+struct pair {
+	struct buffer private_key, public_key;
+};
+
+static void take_pem(struct buffer *out, BIO *bio)
+{
+	char *data;
+	const long size = BIO_get_mem_data(bio, &data);
+
+	buffer_init(out, 1 << 20);
+	buffer_put(out, data, (size_t)size);
+	BIO_free(bio);
+}
+
+/* Takes the key. */
+static struct pair pair_of(EVP_PKEY *key)
+{
+	BIO *private_key = BIO_new(BIO_s_mem()), *public_key = BIO_new(BIO_s_mem());
+	struct pair pair;
+
+	CHECK(key && PEM_write_bio_PKCS8PrivateKey(private_key, key, NULL, NULL, 0, NULL, NULL));
+	CHECK(PEM_write_bio_PUBKEY(public_key, key));
+	take_pem(&pair.private_key, private_key);
+	take_pem(&pair.public_key, public_key);
+	EVP_PKEY_free(key);
+	return pair;
+}
+
+static void finish(struct pair *pair)
+{
+	buffer_finish(&pair->private_key);
+	buffer_finish(&pair->public_key);
+}
+
+/* Keys by id: the pair under "k", and one that has signed nothing under "other". */
+static cJSON *keys_with(const struct pair *pair, const char *type, const char *scheme)
+{
+	cJSON *keys = cJSON_CreateObject(), *key = cJSON_AddObjectToObject(keys, "k");
+	char text[4096] = "";
+
+	memcpy(text, pair->public_key.data, pair->public_key.size);
+	cJSON_AddStringToObject(key, "keytype", type);
+	cJSON_AddStringToObject(key, "scheme", scheme);
+	cJSON_AddStringToObject(cJSON_AddObjectToObject(key, "keyval"), "public", text);
+	return keys;
+}
+
+static void signs_and_checks(EVP_PKEY *key, const char *type, const char *scheme)
+{
+	struct pair pair = pair_of(key);
+	cJSON *keys = keys_with(&pair, type, scheme), *signatures = cJSON_CreateArray();
+	cJSON *role = cJSON_Parse("{\"keyids\":[\"gone\",\"k\"],\"threshold\":1}");
+	struct bytes bad = { (const uint8_t *)"{\"version\":2}", 13 };
+	struct buffer signature;
+
+	buffer_init(&signature, 1024);
+	CHECK(tuf_private_sign(&signature, buffer_bytes(&pair.private_key), message) == 0);
+	CHECK(tuf_add_signature(signatures, keys, role, bad, buffer_bytes(&signature)) ==
+	      -EKEYREJECTED);
+	CHECK(cJSON_GetArraySize(signatures) == 0);
+	for (int i = 0; i < 2; i++) /* a key counts once */
+		CHECK(tuf_add_signature(signatures, keys, role, message,
+					buffer_bytes(&signature)) == 0);
+	CHECK(cJSON_GetArraySize(signatures) == 1);
+	buffer_finish(&signature);
+	cJSON_Delete(signatures);
+	cJSON_Delete(role);
+	cJSON_Delete(keys);
+	finish(&pair);
+}
+
+static void signs_with_ecdsa_and_rsa(void **state)
+{
+	(void)state;
+	signs_and_checks(EVP_EC_gen("P-256"), "ecdsa", "ecdsa-sha2-nistp256");
+	signs_and_checks(EVP_RSA_gen(2048), "rsa", "rsassa-pss-sha256");
+}
+
+static void refuses_keys_that_are_none(void **state)
+{
+	struct pair p384 = pair_of(EVP_EC_gen("P-384"));
+	const struct bytes text = { (const uint8_t *)"-----BEGIN PRIVATE KEY-----\nAA\n", 31 };
+	struct buffer signature;
+
+	(void)state;
+	buffer_init(&signature, 1024);
+	CHECK(tuf_private_sign(&signature, buffer_bytes(&p384.private_key), message) ==
+	      -EOPNOTSUPP);
+	CHECK(tuf_private_sign(&signature, buffer_bytes(&p384.public_key), message) == -EBADMSG);
+	CHECK(tuf_private_sign(&signature, text, message) == -EBADMSG);
+	CHECK(signature.size == 0);
+	buffer_finish(&signature);
+	finish(&p384);
+}
+
+/* Canonical JSON has the line ends of a key in PEM as they are; a file must not. */
+static void writes_line_ends_as_json_does(void **state)
+{
+	cJSON *content = cJSON_Parse("{\"b\":\"two\\nlines\",\"a\":1}"), *read;
+	cJSON *signatures = cJSON_CreateArray();
+	struct buffer canonical, file;
+
+	(void)state;
+	buffer_init(&canonical, 1000);
+	buffer_init(&file, 1000);
+	CHECK(canonical_write(&canonical, content) == 0);
+	CHECK(memchr(canonical.data, '\n', canonical.size));
+	CHECK(tuf_write_signed(&file, buffer_bytes(&canonical), signatures) == 0);
+	buffer_put_u8(&file, 0);
+	CHECK(strcmp((const char *)file.data,
+		     "{\"signatures\":[],\"signed\":{\"a\":1,\"b\":\"two\\u000alines\"}}\n") == 0);
+	read = cJSON_Parse((const char *)file.data);
+	CHECK(strcmp(cJSON_GetObjectItem(cJSON_GetObjectItem(read, "signed"), "b")->valuestring,
+		     "two\nlines") == 0);
+	buffer_finish(&canonical);
+	buffer_finish(&file);
+	cJSON_Delete(read);
+	cJSON_Delete(content);
+	cJSON_Delete(signatures);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(signs_with_ecdsa_and_rsa),
+		cmocka_unit_test(refuses_keys_that_are_none),
+		cmocka_unit_test(writes_line_ends_as_json_does),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
