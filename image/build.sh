@@ -6,14 +6,19 @@
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
-#   KEYS=FOLDER     key.pem and cert.pem that sign updates (default: build/image-keys, created if missing)
+#   KEYS=FOLDER     key.pem and cert.pem that sign updates, and provenance.key (default: build/image-keys, created if
+#                   missing)
 #   SEQUENCE=N      of this system and its update bundle: a terminal installs none with a lower number than one it found good
 #                   (default: the time of the commit, in seconds since 1970)
+#   TRACKER=FILE    of Debian's known vulnerabilities, or its address (default: that of security-tracker.debian.org); "no" for
+#                   no report
+#   BUILDER=URI     of who builds, in provenance.json
 #   OUT=FOLDER      instead of build/image
 #
 # Output: base.tar (the packages), tree/ (the complete root), root.squashfs and boot.img (a slot), esp.vfat, gopura.img,
-# gopura.raucb (an update to the same system), packages.txt and sbom.spdx.json: what it is made of, and left-out.txt:
-# files of the packages that are not in the image.
+# gopura.raucb (an update to the same system), packages.txt and sbom.spdx.json: what it is made of, vulnerabilities.txt:
+# what is known about that, provenance.json: where it comes from, signed, and left-out.txt: files of the packages that
+# are not in the image.
 # docs/image.md explains the layout of the disk.
 set -eu
 cd "$(dirname "$0")/.."
@@ -65,4 +70,17 @@ export here out keys version_text sequence slot_mib boot_mib esp_mib data_mib
 fakeroot image/assemble.sh
 image/sbom.sh "$out/packages.txt" "$version_text" >"$out/sbom.spdx.json"
 image/bundle.sh "$out"
+KEYS=$keys MIRROR=$mirror VERSION=$version_text SEQUENCE=$sequence \
+	image/provenance.sh make "$out" gopura.img gopura.raucb root.squashfs boot.img >"$out/provenance.json"
+rm -f "$out/vulnerabilities.txt"
+tracker=${TRACKER:-https://security-tracker.debian.org/tracker/data/json}
+if [ "$tracker" != no ]; then
+	status=0
+	image/vulnerabilities.sh "$out/packages.txt" "$tracker" >"$out/vulnerabilities.new" || status=$?
+	case $status in
+	0 | 3) mv "$out/vulnerabilities.new" "$out/vulnerabilities.txt" ;;
+	*) rm "$out/vulnerabilities.new"; say "no report of known vulnerabilities; make it where the tracker can be reached (docs/upgrades.md)" ;;
+	esac
+	[ $status != 3 ] || say "an update mends known vulnerabilities of these packages: build with FRESH=yes (docs/upgrades.md)"
+fi
 say "$(stat -c %s "$out/root.squashfs" | awk '{ printf "a slot has %.0f MB", $1 / 1e6 }'), the image $(du -m "$out/gopura.img" | cut -f1) MiB: $out/gopura.img"

@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 case $tracker in
 https://*)
-	curl -sSfL --max-time 300 -o "$work/tracker.json" "$tracker" || { echo "vulnerabilities: $tracker cannot be fetched" >&2; exit 1; }
+	curl -sSfL --connect-timeout 20 --max-time 300 -o "$work/tracker.json" "$tracker" || { echo "vulnerabilities: $tracker cannot be fetched" >&2; exit 1; }
 	tracker=$work/tracker.json
 	;;
 esac

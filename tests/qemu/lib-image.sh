@@ -13,4 +13,4 @@ fi
 conf=$(dirname "$out")
 cp build/qemu/release/root/1.json "$conf/root.json"
 printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
-CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=ttyS0 loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} image/build.sh
+CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=ttyS0 loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
