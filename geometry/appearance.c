@@ -24,16 +24,16 @@ const char appearance_fog_glsl[] =
 	"}\n";
 
 /* Hollows of about four centimetres, and half of that. */
-const char appearance_relief_glsl[] =
-	"float relief_height(vec3 p, float footprint_m) {\n"
+const char appearance_pattern_glsl[] =
+	"vec3 pattern_at(vec3 p, float footprint_m) {\n"
 	"#ifdef SOLID\n"
-	"	return dot(SOLID(p.x, p.y, p.z, footprint_m), vec3(0.3, 0.6, 0.1));\n"
+	"	return SOLID(p.x, p.y, p.z, footprint_m);\n"
 	"#else\n"
 	"	float hollow = mix(0.5, noise_at(p.x * 25.0, p.y * 25.0, p.z * 25.0),\n"
 	"			   noise_kept(25.0, footprint_m));\n"
 	"	float mark = mix(0.5, noise_at(p.x * 51.0, p.y * 51.0, p.z * 51.0),\n"
 	"			 noise_kept(51.0, footprint_m));\n"
-	"	return 0.7 * hollow + 0.3 * mark;\n"
+	"	return vec3(0.7 * hollow + 0.3 * mark);\n"
 	"#endif\n"
 	"}\n";
 

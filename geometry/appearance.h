@@ -60,8 +60,9 @@ float appearance_fog(float distance_m, float range_m, bool is_exponential);
 /* GLSL ES 1.00 source of
  *   float highlight(vec3 n, vec3 to_eye, vec3 sun, float shininess)
  *   float fog_share(float d, bool is_exponential), d as a share of the range
- *   float relief_height(vec3 p, float footprint_m), which needs substance_glsl before it, and SOLID
- *   defined as the function of a substance if there is one. */
-extern const char appearance_glsl[], appearance_fog_glsl[], appearance_relief_glsl[];
+ *   vec3 pattern_at(vec3 p, float footprint_m): the colour of a substance, or how high hewn stone
+ * is there; the brightness of both is the height of the relief. It needs substance_glsl before it,
+ * and SOLID defined as the function of a substance if there is one. */
+extern const char appearance_glsl[], appearance_fog_glsl[], appearance_pattern_glsl[];
 
 #endif

@@ -497,6 +497,17 @@ static const struct surface_program *use(struct surface *surface, const struct s
 	return &surface->of[surface->lacks[tools] ? 0 : tools][program];
 }
 
+bool surface_prepare(struct surface *surface, const struct surface_frame *frame)
+{
+	const unsigned tools = surface_tools(frame);
+	for (int i = 0; i < SURFACE_PROGRAMS && !surface->lacks[tools]; i++)
+		if (!surface->of[tools][i].program) {
+			(void)use(surface, frame, i);
+			return false;
+		}
+	return true;
+}
+
 void surface_begin(struct surface *surface, const struct surface_frame *frame, int program)
 {
 	const struct surface_program *p = surface->used = use(surface, frame, program);

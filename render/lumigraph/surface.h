@@ -101,6 +101,9 @@ int surface_choose(const struct surface_frame *frame, const struct blend blend[P
 		   struct dissolve_range range);
 /* Returns how many faces a program blends: 0..PLAN_ENTRIES. */
 int surface_faces(int program);
+/* Builds one of the programs that the tools of the frame still lack. Returns whether there was none
+ * left to build, or the driver refused one. */
+bool surface_prepare(struct surface *surface, const struct surface_frame *frame);
 /* Sets up the state and uniforms of a program. Then, per patch, call geometry_bind and
  * surface_dissolve, and per piece surface_blend (unless the program blends no faces). With a
  * section plane both sides of triangles must be drawn: back faces show where solid matter is

@@ -88,43 +88,78 @@ static void draw_face(struct scene *scene, int face, const float from_m[3])
 			    SCENE_AROUND_PX, SCENE_AROUND_PX);
 }
 
-static void draw_faces(struct scene *scene, const float from_m[3])
+/* Draws the next face into the cube map that is being made. */
+static int draw_next(struct scene *scene, const float from_m[3])
 {
 	static const struct appearance_cube empty = { .side_px = SCENE_AROUND_PX };
 	const struct cut_options options = { .error_px = 1,
 					     .triangle_budget = scene->options.triangle_budget };
+	struct scene_around *around = &scene->scenery.around;
 	struct gl_target target;
 	int rc;
 
-	if (gl_target_create(&target, SCENE_AROUND_PX, SCENE_AROUND_PX) < 0)
-		return;
-	rc = scenery_picture_surround(&scene->scenery.picture, &empty);
-	if (rc == 0) {
-		cut_update_around(&scene->around, from_m, (float)SCENE_AROUND_PX / 2,
-				  scene->geometry.loaded, &options);
-		glDisable(GL_BLEND);
-		glDisable(GL_CULL_FACE);
-		glEnable(GL_DEPTH_TEST);
-		glDepthMask(GL_TRUE);
-		glDepthFunc(GL_LESS);
-		for (int face = 0; face < 6; face++)
-			draw_face(scene, face, from_m);
-		rc = gl_check("drawing what mirrors show");
+	if (!around->coming) {
+		rc = scenery_cube_create(&around->coming, &empty);
+		if (rc < 0)
+			return rc;
 	}
+	rc = gl_target_create(&target, SCENE_AROUND_PX, SCENE_AROUND_PX);
+	if (rc < 0)
+		return rc;
+	glActiveTexture(GL_TEXTURE0);
+	glBindTexture(GL_TEXTURE_CUBE_MAP, around->coming);
+	cut_update_around(&scene->around, from_m, (float)SCENE_AROUND_PX / 2,
+			  scene->geometry.loaded, &options);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
+	draw_face(scene, around->face, from_m);
+	rc = gl_check("drawing what mirrors show");
 	gl_target_destroy(&target);
+	return rc;
 }
 
-bool scene_update_around(struct scene *scene, bool moved)
+bool scene_around_waits(const struct scene *scene)
+{
+	const struct scene_around *around = &scene->scenery.around;
+	float from_m[3];
+
+	return around->face > 0 ||
+	       (around->cut != scene->cut_signature && find_middle(from_m, &scene->scenery));
+}
+
+void scene_update_around(struct scene *scene, bool moved)
 {
 	struct scene_scenery *scenery = &scene->scenery;
+	struct scene_around *around = &scenery->around;
 	float from_m[3] = { 0 };
 
 	/* Of a face of depths that is half drawn, the list of patches is still needed. */
-	if (moved || !scenery->is_here || !scene->has_hierarchy || !scene->geometry.loaded[0] ||
-	    scene->depth_task.is_begun || scenery->around_cut == scene->cut_signature ||
-	    !find_middle(from_m, scenery))
-		return false;
-	scenery->around_cut = scene->cut_signature;
-	draw_faces(scene, from_m);
-	return true;
+	if ((moved && (scenery->is_ready || scenery->picture.around)) ||
+	    scene->depth_task.is_begun || !scene_around_waits(scene))
+		return;
+	if (around->face == 0)
+		around->cut = scene->cut_signature;
+	if (!find_middle(from_m, scenery) || draw_next(scene, from_m) < 0) {
+		scene_drop_around(scene);
+		around->cut = scene->cut_signature; /* not again before it changes */
+		return;
+	}
+	around->face++;
+	if (around->face < 6)
+		return;
+	scenery_picture_surround(&scenery->picture, around->coming);
+	around->coming = 0;
+	around->face = 0;
+}
+
+void scene_drop_around(struct scene *scene)
+{
+	struct scene_around *around = &scene->scenery.around;
+
+	if (around->coming)
+		glDeleteTextures(1, &around->coming);
+	*around = (struct scene_around){ 0 };
 }

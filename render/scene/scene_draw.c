@@ -271,7 +271,7 @@ static bool is_busy(const struct scene *scene)
 {
 	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
 	       scene->depth_is_stale || stream_growth_moves(&scene->stream.growth) ||
-	       pool_busy(scene->pool) > 0;
+	       pool_busy(scene->pool) > 0 || scene_scenery_waits(scene);
 }
 
 static bool view_changed(const struct scene *scene, const struct view *view)
@@ -444,8 +444,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, passed, out);
-	if (scene_update_around(scene, moved))
-		accumulation_break(&scene->accumulation);
+	if (scene_scenery(scene))
+		scene_update_around(scene, moved);
 	if (scene_note_mark(scene, mark))
 		/* it answers a touch, so it must appear at once */
 		accumulation_break(&scene->accumulation);

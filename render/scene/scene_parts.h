@@ -72,13 +72,22 @@ struct scene_stream {
 	bool over; /* patches are shown: it is not wanted any more */
 };
 
+/* The making of what mirrors show. */
+struct scene_around {
+	GLuint coming; /* cube map that is being made; 0: none. Owned */
+	int face;      /* of it, the next to draw */
+	uint64_t cut;  /* state of the cut when it was begun, or when the last one was; 0: never */
+};
+
 /* What stands beside the scan. */
 struct scene_scenery {
 	struct scenery content;
 	struct pose pose;
 	struct scenery_picture picture;
+	struct scene_around around;
 	bool is_here;
-	uint64_t around_cut; /* state of the cut that mirrors show; 0: none yet */
+	bool is_ready; /* its programs are built, so it appears */
+	bool lacks;    /* the last picture had plainer programs */
 };
 
 struct scene {

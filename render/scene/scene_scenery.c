@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "geometry/vec.h"
+#include "render/scene/scene_around.h"
 
 int scene_put_scenery(struct scene *scene, struct scenery *scenery)
 {
@@ -36,8 +37,8 @@ void scene_drop_scenery(struct scene *scene)
 	scenery_picture_drop(&own->picture);
 	pose_finish(&own->pose);
 	scenery_finish(&own->content);
-	own->is_here = false;
-	own->around_cut = 0;
+	scene_drop_around(scene);
+	own->is_here = own->is_ready = own->lacks = false;
 }
 
 /* It appears when there are patches to stand on. */
@@ -48,7 +49,8 @@ static bool is_shown(const struct scene *scene)
 
 bool scene_step_scenery(struct scene *scene, float passed_ms)
 {
-	return is_shown(scene) && pose_step(&scene->scenery.pose, passed_ms);
+	return is_shown(scene) && scene->scenery.is_ready &&
+	       pose_step(&scene->scenery.pose, passed_ms);
 }
 
 struct surface_fog scene_fog(const struct scene *scene)
@@ -69,12 +71,39 @@ struct surface_fog scene_fog(const struct scene *scene)
 	return out;
 }
 
+/* Builds a program of those that are needed for it to appear, with its fog and without. */
+static void prepare(struct scene *scene, const struct surface_frame *frame)
+{
+	struct scene_scenery *own = &scene->scenery;
+	struct surface_frame foggy = *frame;
+
+	if ((!own->picture.around && scene_around_waits(scene)) ||
+	    !scenery_picture_prepare(&own->picture, &own->pose, frame))
+		return;
+	foggy.fog.share = 1;
+	own->is_ready = !(own->content.fog.range_m > 0) ||
+			(surface_prepare(&scene->surface, &foggy) &&
+			 scenery_picture_prepare(&own->picture, &own->pose, &foggy));
+}
+
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 {
+	struct scene_scenery *own = &scene->scenery;
+
 	if (!is_shown(scene) || frame->shares)
 		return;
-	scenery_picture_bend(&scene->scenery.picture, &scene->scenery.pose);
-	scenery_picture_draw(&scene->scenery.picture, &scene->scenery.pose, frame);
+	scenery_picture_bend(&own->picture, &own->pose);
+	if (own->is_ready)
+		own->lacks = !scenery_picture_draw(&own->picture, &own->pose, frame);
+	else
+		prepare(scene, frame);
+}
+
+bool scene_scenery_waits(const struct scene *scene)
+{
+	const struct scene_scenery *own = &scene->scenery;
+
+	return is_shown(scene) && (!own->is_ready || own->lacks || scene_around_waits(scene));
 }
 
 uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],

@@ -11,7 +11,10 @@ must_check int scene_put_scenery(struct scene *scene, struct scenery *scenery);
 bool scene_step_scenery(struct scene *scene, float passed_ms);
 /* Returns the fog that is seen now. */
 struct surface_fog scene_fog(const struct scene *scene);
-/* Draws it over the patches. */
+/* Returns whether it waits for a program, or a face of what mirrors show, one of which each frame
+ * makes: the picture has to be drawn again. */
+bool scene_scenery_waits(const struct scene *scene);
+/* Draws it over the patches. What has just come is made ready first, and appears then. */
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame);
 /* Returns the node of the scenery that the ray meets before *distance_m, which is lowered to it, or
  * SCENERY_NONE. */

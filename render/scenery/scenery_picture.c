@@ -43,20 +43,26 @@ int scenery_picture_load(struct scenery_picture *picture, const struct scenery *
 	return gl_check("uploading scenery");
 }
 
-int scenery_picture_surround(struct scenery_picture *picture, const struct appearance_cube *around)
+int scenery_cube_create(GLuint *out, const struct appearance_cube *faces)
 {
-	if (!picture->around)
-		glGenTextures(1, &picture->around);
+	glGenTextures(1, out);
 	glActiveTexture(GL_TEXTURE0);
-	glBindTexture(GL_TEXTURE_CUBE_MAP, picture->around);
+	glBindTexture(GL_TEXTURE_CUBE_MAP, *out);
 	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
 	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
 	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
 	glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 	for (GLenum i = 0; i < 6; i++)
-		glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + i, 0, GL_RGBA, around->side_px,
-			     around->side_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, around->faces[i]);
-	return gl_check("uploading what mirrors show");
+		glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + i, 0, GL_RGBA, faces->side_px,
+			     faces->side_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, faces->faces[i]);
+	return gl_check("making what mirrors show");
+}
+
+void scenery_picture_surround(struct scenery_picture *picture, GLuint cube)
+{
+	if (picture->around)
+		glDeleteTextures(1, &picture->around);
+	picture->around = cube;
 }
 
 void scenery_picture_drop(struct scenery_picture *picture)
@@ -68,9 +74,7 @@ void scenery_picture_drop(struct scenery_picture *picture)
 			glDeleteBuffers(1, buffers[i]);
 		*buffers[i] = 0;
 	}
-	if (picture->around)
-		glDeleteTextures(1, &picture->around);
-	picture->around = 0;
+	scenery_picture_surround(picture, 0);
 	free(picture->offsets);
 	free(picture->triangles);
 	picture->offsets = NULL;
@@ -216,19 +220,20 @@ struct drawing {
 	GLuint used; /* program; 0: none yet */
 };
 
-static unsigned features_of(const struct drawing *drawing, const struct scenery_material *material,
+static unsigned features_of(const struct drawing *drawing, uint32_t mesh,
 			    struct dissolve_range range)
 {
-	const uint8_t *s = material->specular, *e = material->emissive;
+	const struct scenery_material material = pose_material(drawing->pose, mesh);
+	const uint8_t *s = material.specular, *e = material.emissive;
 	const bool is_glossy = s[0] || s[1] || s[2] || e[0] || e[1] || e[2];
 
 	return surface_tools(drawing->frame) |
 	       (dissolve_is_whole(range) ? 0u : (unsigned)SCENERY_DISSOLVES) |
-	       (material->by_pixel ? (unsigned)SCENERY_BY_PIXEL : 0u) |
+	       (material.by_pixel ? (unsigned)SCENERY_BY_PIXEL : 0u) |
 	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u) |
-	       (material->relief_m > 0 ? (unsigned)SCENERY_RELIEF : 0u) |
-	       (material->mirror > 0 && drawing->picture->around ? (unsigned)SCENERY_MIRROR : 0u) |
-	       (unsigned)SCENERY_SUBSTANCE * material->substance;
+	       (material.relief_m > 0 ? (unsigned)SCENERY_RELIEF : 0u) |
+	       (material.mirror > 0 && drawing->picture->around ? (unsigned)SCENERY_MIRROR : 0u) |
+	       (unsigned)SCENERY_SUBSTANCE * material.substance;
 }
 
 static bool is_seen(const struct drawing *drawing, uint32_t mesh)
@@ -244,23 +249,16 @@ static bool is_seen(const struct drawing *drawing, uint32_t mesh)
 	return view_sees_sphere(drawing->frame->view, centre, radius);
 }
 
-/* Sets up the program and the attributes of a mesh. Returns false where the driver has no program
- * for it. */
-static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
+/* Sets up a program and the attributes of a mesh. */
+static void begin_mesh_with(struct drawing *drawing, uint32_t mesh, const struct scenery_program *p)
 {
 	const struct scenery *scenery = drawing->pose->scenery;
 	const struct scenery_mesh *of = &scenery->meshes[mesh];
 	const struct scenery_material material = pose_material(drawing->pose, mesh);
 	const struct pose_node *node = &drawing->pose->nodes[of->node];
-	const struct dissolve_range range = { node->low, node->high };
-	const struct scenery_program *p = scenery_programs_get(
-		&drawing->picture->programs, features_of(drawing, &material, range),
-		drawing->frame->root->cut);
 	const size_t first = drawing->picture->offsets[mesh].vertex_bytes;
 	const GLsizei stride = sizeof(struct scenery_vertex);
 
-	if (!p)
-		return false;
 	if (p->program != drawing->used)
 		set_frame(p, drawing->frame);
 	drawing->used = p->program;
@@ -273,7 +271,20 @@ static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
 			      (void *)(first + offsetof(struct scenery_vertex, normal)));
 	glVertexAttribPointer(2, 3, GL_UNSIGNED_BYTE, GL_TRUE, stride,
 			      (void *)(first + offsetof(struct scenery_vertex, rgb)));
-	return true;
+}
+
+/* The same with the program of its material. Returns false where there is none to draw with. */
+static bool begin_mesh(struct drawing *drawing, uint32_t mesh)
+{
+	const struct scenery_mesh *of = &drawing->pose->scenery->meshes[mesh];
+	const struct pose_node *node = &drawing->pose->nodes[of->node];
+	const struct dissolve_range range = { node->low, node->high };
+	const struct scenery_program *p = scenery_programs_get(&drawing->picture->programs,
+							       features_of(drawing, mesh, range));
+
+	if (p)
+		begin_mesh_with(drawing, mesh, p);
+	return p;
 }
 
 static void draw_triangles(size_t index_bytes, uint32_t count)
@@ -319,7 +330,21 @@ static int prepare_ordered(struct drawing *drawing)
 	return 0;
 }
 
-/* Blends what is transparent over the picture. Alpha, which says where the model is, only grows. */
+/* What is transparent is blended over the picture. Alpha, which says where the model is, only
+ * grows. */
+static void begin_blending(void)
+{
+	glEnable(GL_BLEND);
+	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+	glDepthMask(GL_FALSE);
+}
+
+static void end_blending(void)
+{
+	glDepthMask(GL_TRUE);
+	glDisable(GL_BLEND);
+}
+
 static void draw_ordered(struct drawing *drawing)
 {
 	const struct scenery_order *order = &drawing->picture->order;
@@ -327,9 +352,7 @@ static void draw_ordered(struct drawing *drawing)
 
 	if (prepare_ordered(drawing) < 0 || order->count == 0)
 		return;
-	glEnable(GL_BLEND);
-	glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-	glDepthMask(GL_FALSE);
+	begin_blending();
 	for (uint32_t i = 0; i < order->count; i = after) {
 		const uint32_t mesh = order->triangles[i].mesh;
 
@@ -338,28 +361,70 @@ static void draw_ordered(struct drawing *drawing)
 		if (begin_mesh(drawing, mesh))
 			draw_triangles(i * sizeof(*drawing->picture->triangles), after - i);
 	}
-	glDepthMask(GL_TRUE);
-	glDisable(GL_BLEND);
+	end_blending();
 }
 
-void scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
-			  const struct surface_frame *frame)
+static void begin(const struct drawing *drawing)
 {
-	struct drawing drawing = { .picture = picture, .pose = pose, .frame = frame };
-	const struct scenery *scenery = pose->scenery;
+	struct scenery_picture *picture = drawing->picture;
 
+	scenery_programs_begin(&picture->programs, drawing->frame->root->cut);
 	glActiveTexture(GL_TEXTURE0);
 	glBindTexture(GL_TEXTURE_CUBE_MAP, picture->around);
 	glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
 	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->indices);
 	for (GLuint i = 0; i < 3; i++)
 		glEnableVertexAttribArray(i);
+}
+
+bool scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
+			  const struct surface_frame *frame)
+{
+	struct drawing drawing = { .picture = picture, .pose = pose, .frame = frame };
+	const struct scenery *scenery = pose->scenery;
+
+	begin(&drawing);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
 		if (is_solid(scenery, i) && is_seen(&drawing, i) && begin_mesh(&drawing, i))
 			draw_triangles(picture->offsets[i].index_bytes,
 				       scenery->meshes[i].triangle_count);
 	draw_ordered(&drawing);
 	glDisable(GL_CULL_FACE);
+	return !picture->programs.lacks;
+}
+
+/* Drivers leave a part of the work to the first triangle that is drawn with a program. This one is
+ * drawn in no pixel. */
+static void draw_unseen(struct drawing *drawing, uint32_t mesh, const struct scenery_program *p)
+{
+	const bool blends = !is_solid(drawing->pose->scenery, mesh);
+
+	if (blends)
+		begin_blending();
+	begin_mesh_with(drawing, mesh, p);
+	glUniform2f(p->range, 2, 2);
+	draw_triangles(drawing->picture->offsets[mesh].index_bytes, 1);
+	if (blends)
+		end_blending();
+	glDisable(GL_CULL_FACE);
+}
+
+bool scenery_picture_prepare(struct scenery_picture *picture, const struct pose *pose,
+			     const struct surface_frame *frame)
+{
+	struct drawing drawing = { .picture = picture, .pose = pose, .frame = frame };
+	const struct scenery *scenery = pose->scenery;
+	const struct dissolve_range part = { 0, 0.5f };
+
+	begin(&drawing);
+	for (uint32_t i = 0; i < scenery->mesh_count && !picture->programs.is_built; i++) {
+		const struct scenery_program *p =
+			scenery_programs_make(&picture->programs, features_of(&drawing, i, part));
+
+		if (p)
+			draw_unseen(&drawing, i, p);
+	}
+	return !picture->programs.is_built;
 }
 
 /* ---- rays */

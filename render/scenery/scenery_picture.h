@@ -27,10 +27,11 @@ struct scenery_picture {
 
 /* Uploads the meshes in place of any before. -ENOMEM, or as gl_check. */
 must_check int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery);
-/* Takes the six faces of what mirrors show, as geometry/appearance.h has them. Errors as gl_check.
- */
-must_check int scenery_picture_surround(struct scenery_picture *picture,
-					const struct appearance_cube *around);
+/* Makes a cube map with linear filters of six faces as geometry/appearance.h has them; NULL faces
+ * are undefined. The caller deletes *out, whatever is returned. Errors as gl_check. */
+must_check int scenery_cube_create(GLuint *out, const struct appearance_cube *faces);
+/* Takes the cube map that mirrors show from now on, in place of any before; 0: none. */
+void scenery_picture_surround(struct scenery_picture *picture, GLuint cube);
 /* Uploads the vertices of meshes that motions bent or coloured since the last call. */
 void scenery_picture_bend(struct scenery_picture *picture, const struct pose *pose);
 /* Frees the meshes. */
@@ -39,9 +40,15 @@ void scenery_picture_drop(struct scenery_picture *picture);
 void scenery_picture_finish(struct scenery_picture *picture);
 
 /* Draws what the pose shows, with the depth test of the picture: first what is solid, then what is
- * transparent, from far to near. Culling and blending are off afterwards. */
-void scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
+ * transparent, from far to near. Culling and blending are off afterwards. Builds one program at
+ * most, so what needs another one may be plainer, or not drawn yet: then it returns false, and the
+ * picture has to be drawn again. */
+bool scenery_picture_draw(struct scenery_picture *picture, const struct pose *pose,
 			  const struct surface_frame *frame);
+/* Builds one of the programs in which all of it dissolves under the tools of the frame, into the
+ * bound target without changing its picture. Returns whether there was none left to build. */
+bool scenery_picture_prepare(struct scenery_picture *picture, const struct pose *pose,
+			     const struct surface_frame *frame);
 
 /* Finds the nearest mesh along a ray, of those that are more than half solid; direction is a unit
  * vector. Returns its node and lowers *distance_m to where it is, or SCENERY_NONE where none is

@@ -23,21 +23,17 @@ static const char shade[] =
 	"uniform float u_pixel;\n" /* its size at a metre */
 	"varying vec3 v_solid;\n"
 	"#endif\n"
+	"#ifdef RELIEF\n"
+	"#define PLACES 4\n"
+	"#else\n"
+	"#define PLACES 1\n"
+	"#endif\n"
 	"#ifdef SOLID\n"
 	"uniform vec3 u_tint;\n"
 	"#endif\n"
 	"#ifdef RELIEF\n"
 	"uniform mat3 u_slope;\n"
 	"uniform float u_relief;\n"
-	"vec3 bent(vec3 n, float size) {\n"
-	"	vec2 step = vec2(max(size, 0.001), 0.0);\n"
-	"	float here = relief_height(v_solid, size);\n"
-	"	vec3 beside = vec3(relief_height(v_solid + step.xyy, size),\n"
-	"			   relief_height(v_solid + step.yxy, size),\n"
-	"			   relief_height(v_solid + step.yyx, size));\n"
-	"	vec3 slope = u_slope * ((beside - here) / step.x);\n"
-	"	return normalize(n - u_relief * (slope - n * dot(slope, n)));\n"
-	"}\n"
 	"#endif\n"
 	"#ifdef MIRROR\n"
 	"uniform samplerCube u_around;\n"
@@ -48,12 +44,27 @@ static const char shade[] =
 	"#if defined(SOLID) || defined(RELIEF)\n"
 	"	float size = length(p) * u_pixel;\n"
 	"#endif\n"
+	"#if defined(SOLID) || defined(RELIEF)\n"
+	"	vec3 pattern = vec3(0.0), beside = vec3(0.0);\n"
+	/* a loop, because compilers take long for the pattern; the first round is the place itself
+	 */
+	"	float step = max(size, 0.001);\n"
+	"	for (int i = 0; i < PLACES; i++) {\n"
+	"		vec3 way = vec3(i == 1, i == 2, i == 3);\n"
+	"		vec3 there = pattern_at(v_solid + step * way, size);\n"
+	"		if (i == 0)\n"
+	"			pattern = there;\n"
+	"		beside += way * dot(there, vec3(0.3, 0.6, 0.1));\n"
+	"	}\n"
+	"#endif\n"
 	"#ifdef SOLID\n"
-	"	surface *= u_tint * SOLID(v_solid.x, v_solid.y, v_solid.z, size);\n"
+	"	surface *= u_tint * pattern;\n"
 	"#endif\n"
 	"	float before = sun.w > 0.5 ? 1.0 : light(n, 1.0, sun.xyz);\n"
 	"#ifdef RELIEF\n"
-	"	n = bent(n, size);\n"
+	"	vec3 slope = (beside - dot(pattern, vec3(0.3, 0.6, 0.1))) / step;\n"
+	"	slope = u_slope * slope;\n"
+	"	n = normalize(n - u_relief * (slope - n * dot(slope, n)));\n"
 	"#endif\n"
 	"	vec3 colour = surface * (light(n, 1.0, sun.xyz) / before);\n"
 	"#ifdef GLOSSY\n"
@@ -171,8 +182,8 @@ static int build(struct scenery_program *p, unsigned cut)
 	const unsigned features = p->features;
 	const struct surface_cut_glsl solid = surface_cut_glsl(features % SURFACE_TOOLS, cut);
 	const bool by_pixel = features & SCENERY_BY_PIXEL, rakes = features & SURFACE_RAKE;
-	const bool has_relief = features & SCENERY_RELIEF;
-	const bool has_noise = has_relief || features >= SCENERY_SUBSTANCE || solid.needs_highp;
+	const bool has_pattern = features & SCENERY_RELIEF || features >= SCENERY_SUBSTANCE;
+	const bool has_noise = has_pattern || solid.needs_highp;
 	char defines[SURFACE_DEFINES_BYTES + 160];
 	int rc;
 
@@ -192,7 +203,7 @@ static int build(struct scenery_program *p, unsigned cut)
 		appearance_glsl,
 		where(has_noise, noise_glsl),
 		where(has_noise, substance_glsl),
-		where(has_relief, appearance_relief_glsl),
+		where(has_pattern, appearance_pattern_glsl),
 		appearance_fog_glsl,
 		where(rakes, rake_fragment_glsl),
 		surface_tools_glsl,
@@ -216,44 +227,95 @@ static int build(struct scenery_program *p, unsigned cut)
 	return 0;
 }
 
-/* Returns the program, built or refused; NULL: memory is short. */
-static struct scenery_program *find(struct scenery_programs *programs, unsigned features)
+/* Returns the program, built or refused; NULL: neither. */
+static const struct scenery_program *find(const struct scenery_programs *programs,
+					  unsigned features)
 {
-	struct scenery_program *p;
-
 	for (uint32_t i = 0; i < programs->count; i++)
 		if (programs->all[i].features == features)
 			return &programs->all[i];
+	return NULL;
+}
+
+/* Builds a program; false: memory is short. */
+static bool add(struct scenery_programs *programs, unsigned features)
+{
+	struct scenery_program *p;
+
 	if (ARRAY_RESERVE(programs->all, programs->room, (uint64_t)programs->count + 1,
 			  SCENERY_FEATURES) < 0)
-		return NULL;
+		return false;
 	p = &programs->all[programs->count++];
 	*p = (struct scenery_program){ .features = features };
 	if (build(p, programs->cut) < 0)
 		p->program = 0;
-	return p;
+	programs->is_built = true;
+	return true;
 }
 
-const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
-						   unsigned features, uint8_t cut)
+/* Leaves out what the board cannot draw. */
+static unsigned possible(unsigned features)
+{
+	if (gl_has_highp())
+		return features;
+	return features % SCENERY_SUBSTANCE & ~(unsigned)SCENERY_RELIEF;
+}
+
+void scenery_programs_begin(struct scenery_programs *programs, uint8_t cut)
 {
 	if (programs->cut != cut)
 		scenery_programs_finish(programs);
 	programs->cut = cut;
-	if (!gl_has_highp())
-		features %= SCENERY_SUBSTANCE;
-	if (!gl_has_highp())
-		features &= ~(unsigned)SCENERY_RELIEF;
-	const unsigned less[] = { features, features % SCENERY_BY_PIXEL,
-				  features & SCENERY_DISSOLVES };
+	programs->is_built = programs->lacks = false;
+}
 
-	for (size_t i = 0; i < ARRAY_COUNT(less); i++) {
-		const struct scenery_program *p = find(programs, less[i]);
+enum { EXACT, DISSOLVING, PLAIN, BARE, RANKS };
 
-		if (p && p->program)
-			return p;
+const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
+						   unsigned features)
+{
+	const unsigned exact = possible(features);
+	const unsigned ranks[RANKS] = { [EXACT] = exact,
+					[DISSOLVING] = exact | SCENERY_DISSOLVES,
+					[PLAIN] = exact % SCENERY_BY_PIXEL | SCENERY_DISSOLVES,
+					[BARE] = SCENERY_DISSOLVES };
+
+	for (;;) {
+		const struct scenery_program *ready = NULL;
+		int missing = RANKS;
+
+		for (int i = 0; i < RANKS && !ready; i++) {
+			const struct scenery_program *p = find(programs, ranks[i]);
+
+			if (p && p->program)
+				ready = p;
+			else if (!p && missing == RANKS && i != DISSOLVING)
+				missing = i;
+		}
+		if (missing == RANKS)
+			return ready;
+		if (programs->is_built) {
+			programs->lacks = true;
+			return ready;
+		}
+		/* If there is none to draw with, one that serves all materials comes first. */
+		if (!ready && missing == EXACT && !find(programs, ranks[PLAIN]))
+			missing = PLAIN;
+		if (!add(programs, ranks[missing]))
+			return ready;
 	}
-	return NULL;
+}
+
+const struct scenery_program *scenery_programs_make(struct scenery_programs *programs,
+						    unsigned features)
+{
+	const struct scenery_program *p;
+
+	features = possible(features);
+	if (find(programs, features) || !add(programs, features))
+		return NULL;
+	p = find(programs, features);
+	return p->program ? p : NULL;
 }
 
 void scenery_programs_finish(struct scenery_programs *programs)

@@ -1,5 +1,6 @@
-/* The shader programs of scenery: one for each set of tools and features of a material, built when
- * it is first drawn with. */
+/* The shader programs of scenery: one for each set of tools and features of a material. A driver
+ * may take long to build one, so a frame builds one at most, and draws with plainer ones meanwhile.
+ */
 #ifndef GOPURA_RENDER_SCENERY_SCENERY_PROGRAM_H
 #define GOPURA_RENDER_SCENERY_SCENERY_PROGRAM_H
 
@@ -29,15 +30,24 @@ struct scenery_program {
 struct scenery_programs {
 	struct scenery_program *all; /* owned */
 	uint32_t count, room;
-	uint8_t cut; /* root_page.cut of all */
+	uint8_t cut;   /* root_page.cut of all */
+	bool is_built; /* the frame has built one */
+	bool lacks;    /* the frame needs another one */
 };
 
-/* Returns the program with those features, bits of the above and of SURFACE_TOOLS, for a release's
- * root_page.cut; a missing one is built. Borrowed until the next call. What the driver refuses is
- * drawn without its material, then without tools; NULL: it refuses that too, or memory is short.
+/* Begins a frame of a release with that root_page.cut: it may build a program. */
+void scenery_programs_begin(struct scenery_programs *programs, uint8_t cut);
+/* Returns the program with those features, bits of the above and of SURFACE_TOOLS. A missing one is
+ * built unless the frame has built one. Otherwise returns what is alike: the one that dissolves as
+ * well, else without the material; NULL: there is none, so the mesh is drawn later. What the driver
+ * refuses is drawn without its material, then without tools. Borrowed until the next call.
  * Substances and relief need fragments with highp; without, they are left out. */
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
-						   unsigned features, uint8_t cut);
+						   unsigned features);
+/* Builds the program with those features before it is needed, whatever else the frame has built.
+ * Returns it, or NULL where it is there already, or refused. Borrowed until the next call. */
+const struct scenery_program *scenery_programs_make(struct scenery_programs *programs,
+						    unsigned features);
 void scenery_programs_finish(struct scenery_programs *programs); /* zeroed is fine */
 
 #endif

@@ -7,6 +7,7 @@
 #include "format/picture.h"
 #include "format/scenery_code.h"
 #include "geometry/appearance.h"
+#include "geometry/substance.h"
 #include "geometry/vec.h"
 #include "geometry/view.h"
 #include "render/display/gl.h"
@@ -336,6 +337,72 @@ static void a_mirror_shows_scan_and_sky(void **state)
 	CHECK(!is_wood(0.2f, -6, 0.1f));
 }
 
+/* As if it had just come, with wood that has relief on the door and a glossy mirror in the second
+ * layer. */
+static void come_again(void)
+{
+	struct scene_scenery *own = &stage.scene->scenery;
+	struct scenery *s = &own->content;
+
+	s->materials[0].by_pixel = true;
+	s->materials[0].substance = SUBSTANCE_WOOD;
+	s->materials[0].relief_m = 0.01f;
+	s->materials[1] = (struct scenery_material){ .by_pixel = true,
+						     .opacity = 1,
+						     .specular = { 90, 90, 90 },
+						     .shininess = 20,
+						     .mirror = 0.5f,
+						     .grain = { 0, 0, 1 } };
+	s->material_count = 2; /* the decoder leaves room for one more */
+	s->meshes[1].material = 1;
+	scenery_programs_finish(&own->picture.programs);
+	pose_finish(&own->pose);
+	CHECK(pose_init(&own->pose, s) == 0);
+	own->is_ready = false;
+}
+
+/* Draws until the picture has settled; no frame may build two programs or draw two faces of what
+ * mirrors show. Returns how many programs there are then. */
+static uint32_t count_programs(void)
+{
+	const struct scene_scenery *own = &stage.scene->scenery;
+
+	for (int frames = 0; frames < FRAMES_MAX; frames++) {
+		const uint32_t programs = own->picture.programs.count;
+		const int face = own->around.face;
+
+		gl_target_bind(&stage.target);
+		scene_draw(stage.scene, &eye, NULL, &stage.frame);
+		little_release_serve(release, stage.scene, 16);
+		CHECK(own->picture.programs.count - programs <= 1);
+		CHECK(own->around.face == (face + 1) % 6 || own->around.face == face);
+		/* what appears, and what mirrors show, is complete */
+		CHECK(own->is_ready || own->pose.appeared == 0);
+		CHECK(!own->is_ready || own->picture.around);
+		if (stage.frame.settled)
+			break;
+	}
+	CHECK(stage.frame.settled && own->is_ready && !own->lacks);
+	return own->picture.programs.count;
+}
+
+static void a_frame_builds_one_program_at_most(void **state)
+{
+	struct scene_tools tools = { .rake = { .on = true } };
+
+	(void)state;
+	settle("plain");
+	come_again();
+	scene_choose_layer(stage.scene, 1);
+	/* of each material the one that dissolves, before it appears, and the one that does not */
+	assert_int_equal(count_programs(), 4);
+	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+	/* under a tool, one that serves both until each has its own */
+	rake_place(&tools.rake, -0.6f, 0.5f);
+	scene_use(stage.scene, &tools);
+	assert_int_equal(count_programs(), 7);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -347,6 +414,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_mirror_shows_scan_and_sky, raise_stage,
 						strike_stage),
 		cmocka_unit_test_setup_teardown(fog_hides_by_distance, raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_frame_builds_one_program_at_most, raise_stage,
+						strike_stage),
 	};
 	int failed;
 

@@ -279,15 +279,18 @@ static void draw_gles(const struct gl_target *target, const struct pose *pose,
 {
 	const uint8_t *sky = frame->root->background;
 	struct scenery_picture picture = { 0 };
+	GLuint cube;
 
 	CHECK(scenery_picture_load(&picture, pose->scenery) == 0);
-	CHECK(scenery_picture_surround(&picture, around) == 0);
+	CHECK(scenery_cube_create(&cube, around) == 0);
+	scenery_picture_surround(&picture, cube);
 	gl_target_bind(target);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LESS);
 	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 1);
-	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-	scenery_picture_draw(&picture, pose, frame);
+	do {
+		glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+	} while (!scenery_picture_draw(&picture, pose, frame));
 	CHECK(gl_target_read(target, rgba) == 0);
 	scenery_picture_finish(&picture);
 }
