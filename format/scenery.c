@@ -155,7 +155,7 @@ static bool meshes_are_sane(const struct scenery *scenery)
 	return true;
 }
 
-static bool bends_are_sane(const struct scenery *scenery)
+bool scenery_bends_fit(const struct scenery *scenery)
 {
 	uint64_t of_shapes = 0, bent = 0;
 
@@ -341,7 +341,7 @@ bool scenery_is_sane(const struct scenery *scenery)
 {
 	return nodes_are_sane(scenery) && materials_are_sane(scenery) && fog_is_sane(scenery) &&
 	       meshes_are_sane(scenery) && touches_are_sane(scenery) && motions_are_sane(scenery) &&
-	       bends_are_sane(scenery) && drags_are_sane(scenery) && layers_are_sane(scenery);
+	       scenery_bends_fit(scenery) && drags_are_sane(scenery) && layers_are_sane(scenery);
 }
 
 void scenery_finish(struct scenery *scenery)

@@ -207,6 +207,8 @@ uint32_t scenery_width(enum scenery_target target);
 bool scenery_is_sane(const struct scenery *scenery);
 /* Returns whether a track of some motion sets the target for a node. */
 bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_target target);
+/* Returns whether no more vertices change, and no more are in shapes, than may. */
+bool scenery_bends_fit(const struct scenery *scenery);
 /* Returns the triangles of all meshes. */
 uint32_t scenery_triangles(const struct scenery *scenery);
 

@@ -327,8 +327,9 @@ static int make(struct reading *r, struct scenery *out)
 	buffer_finish(&object);
 	if (rc == -EFBIG)
 		diagnostics_add(r->diagnostics, -EINVAL, scenes_file, 0,
-				"all scenes together are larger than an object may be; simplify "
-				"them");
+				"all scenes together are larger than an object may be, or over %d "
+				"vertices bend or change their colours; simplify them",
+				SCENERY_BENT_VERTICES_MAX);
 	else if (rc == -EINVAL)
 		diagnostics_add(r->diagnostics, rc, scenes_file, 0,
 				"a scene has places or sizes beyond a thousand kilometres, or "

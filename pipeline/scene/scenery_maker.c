@@ -8,6 +8,7 @@
 
 #include "base/array.h"
 #include "geometry/vec.h"
+#include "pipeline/scene/scenery_bend.h"
 #include "pipeline/scene/scenery_mesh.h"
 
 const struct scenery_material scenery_plain = { .opacity = 1, .grain = { 0, 0, 1 } };
@@ -131,6 +132,35 @@ int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 	return rc;
 }
 
+int scenery_add_bent(struct scenery_maker *maker, uint32_t node,
+		     const struct scenery_material *material, const struct soup *soup,
+		     float crease_rad, const struct scenery_bend *bend)
+{
+	struct scenery_mesh mesh = { .node = node };
+	struct scenery *out = &maker->out;
+	int rc = 0;
+
+	if (soup->count == 0)
+		return 0;
+	if (soup->count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
+	    (material->opacity < 1 &&
+	     soup->count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
+		rc = -EFBIG;
+	if (rc == 0)
+		rc = find_material(maker, material, &mesh.material);
+	if (rc == 0)
+		rc = ARRAY_RESERVE(out->meshes, maker->mesh_room, (uint64_t)out->mesh_count + 1,
+				   SCENERY_MESHES_MAX);
+	if (rc == 0)
+		rc = scenery_bend_mesh(&mesh, soup, crease_rad, bend);
+	if (rc < 0)
+		return rc;
+	maker->clear_count += material->opacity < 1 ? soup->count : 0;
+	maker->triangle_count += soup->count;
+	out->meshes[out->mesh_count++] = mesh;
+	return 0;
+}
+
 int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
 		       uint32_t *number)
 {
@@ -178,6 +208,17 @@ int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motio
 
 	if (rc == 0)
 		out->touches[out->touch_count++] = (struct scenery_touch){ node, motion };
+	return rc;
+}
+
+int scenery_add_drag(struct scenery_maker *maker, const struct scenery_drag *drag)
+{
+	struct scenery *out = &maker->out;
+	int rc = ARRAY_RESERVE(out->drags, maker->drag_room, (uint64_t)out->drag_count + 1,
+			       SCENERY_DRAGS_MAX);
+
+	if (rc == 0)
+		out->drags[out->drag_count++] = *drag;
 	return rc;
 }
 
@@ -232,6 +273,8 @@ int scenery_maker_end(struct scenery_maker *maker, struct scenery *out)
 
 	for (uint32_t i = 0; i < maker->sheet_count && rc == 0; i++)
 		rc = scenery_sheet_meshes(&maker->sheets[i], &maker->out, &maker->mesh_room);
+	if (rc == 0 && !scenery_bends_fit(&maker->out))
+		rc = -EFBIG;
 	if (rc < 0)
 		return rc;
 	*out = maker->out;

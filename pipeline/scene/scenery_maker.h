@@ -28,6 +28,7 @@ struct scenery_look {
 struct scenery_maker {
 	struct scenery out; /* its meshes are made at the end */
 	uint32_t node_room, motion_room, touch_room, track_room, number_room, mesh_room;
+	uint32_t drag_room;
 	uint32_t material_room, clear_count, paint_count;
 	struct scenery_sheet *sheets; /* owned */
 	uint32_t sheet_count, sheet_room, triangle_count;
@@ -54,6 +55,17 @@ must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,
 				   float crease_rad, const struct picture *picture);
+/* A surface that bends: where each of the file's points is in each shape, in the node's metres. */
+struct scenery_bend {
+	const float (*places)[3]; /* borrowed; shape by shape */
+	uint32_t point_count, shape_count;
+};
+
+/* Adds triangles that bend, as one mesh of the node. soup has their corners at rest, in the node's
+ * metres, and the numbers of their points. Normals are computed for each shape. */
+must_check int scenery_add_bent(struct scenery_maker *maker, uint32_t node,
+				const struct scenery_material *material, const struct soup *soup,
+				float crease_rad, const struct scenery_bend *bend);
 /* Tracks follow that are added after it. */
 must_check int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
 				  uint32_t *number);
@@ -63,6 +75,7 @@ must_check int scenery_add_track(struct scenery_maker *maker, uint32_t node,
 				 enum scenery_target target, const float *times, uint32_t key_count,
 				 float **values);
 must_check int scenery_add_touch(struct scenery_maker *maker, uint32_t node, uint32_t motion);
+must_check int scenery_add_drag(struct scenery_maker *maker, const struct scenery_drag *drag);
 
 /* A motion that ends elsewhere than it began would jump when it is touched again, and no format
  * says without a program that a door closes. So each motion from `first` on that is touched runs

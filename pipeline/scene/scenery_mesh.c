@@ -65,7 +65,7 @@ static void smooth_run(struct scenery_corner (*triangles)[3], const float (*face
 
 enum { RUN_MAX = 256 /* corners at one place that are compared with each other */ };
 
-static int smooth(struct scenery_corner (*triangles)[3], uint32_t count, float crease_rad)
+int scenery_smooth(struct scenery_corner (*triangles)[3], uint32_t count, float crease_rad)
 {
 	struct place *places = malloc(3 * (size_t)count * sizeof(*places));
 	float(*faces)[3] = malloc((size_t)count * sizeof(*faces));
@@ -190,7 +190,7 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 		sheet->count += has_area(to);
 	}
 	if (rc == 0 && sheet->count > before)
-		rc = smooth(&sheet->triangles[before], sheet->count - before, crease_rad);
+		rc = scenery_smooth(&sheet->triangles[before], sheet->count - before, crease_rad);
 	return rc == 0 && paint ? divide_all(sheet, before, paint) : rc;
 }
 

@@ -17,6 +17,9 @@ struct scenery_sheet {
 	uint32_t count, room;
 };
 
+/* Sets the normals of corners: smooth where faces meet at no more than crease_rad. -ENOMEM. */
+must_check int scenery_smooth(struct scenery_corner (*triangles)[3], uint32_t count,
+			      float crease_rad);
 /* Adds triangles, with normals that are smooth where faces meet at no more than crease_rad.
  * Triangles without an area are left out. paint: a picture on them, by which they are divided, or
  * NULL. -EFBIG, -ENOMEM. */

@@ -18,21 +18,31 @@ static void place(float out[3], const float m[16], const float p[3])
 		out[k] = m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k];
 }
 
-static int add_triangle(struct soup *soup, const struct soup_corner *a, const struct soup_corner *b,
-			const struct soup_corner *c)
+void soup_place(float out[3], const struct soup *soup, const float at[3])
 {
-	const struct soup_corner *corners[3] = { a, soup->is_inside_out ? c : b,
-						 soup->is_inside_out ? b : c };
+	place(out, soup->place, at);
+}
+
+/* Adds the triangle of three corners, by their numbers. */
+static int add_triangle(struct soup *soup, const struct soup_corner *of, uint32_t a, uint32_t b,
+			uint32_t c)
+{
+	const uint32_t corners[3] = { a, soup->is_inside_out ? c : b, soup->is_inside_out ? b : c };
 	struct soup_triangle *triangle;
 	int rc = ARRAY_RESERVE(soup->triangles, soup->room, (uint64_t)soup->count + 1,
 			       SOUP_TRIANGLES_MAX);
 
+	if (rc == 0 && soup->keeps_sources)
+		rc = ARRAY_RESERVE(soup->sources, soup->source_room, (uint64_t)soup->count + 1,
+				   SOUP_TRIANGLES_MAX);
 	if (rc < 0)
 		return rc;
+	for (int i = 0; i < 3 && soup->keeps_sources; i++)
+		soup->sources[soup->count][i] = soup->from[corners[i]];
 	triangle = &soup->triangles[soup->count++];
 	for (int i = 0; i < 3; i++) {
-		triangle->corners[i] = *corners[i];
-		place(triangle->corners[i].position, soup->place, corners[i]->position);
+		triangle->corners[i] = of[corners[i]];
+		place(triangle->corners[i].position, soup->place, of[corners[i]].position);
 	}
 	triangle->texture = soup->texture;
 	return 0;
@@ -112,10 +122,8 @@ static bool is_ear(const struct polygon *polygon, uint32_t at, uint64_t *steps)
 static int cut(struct soup *soup, struct polygon *polygon, uint32_t at)
 {
 	uint32_t count = polygon->count--;
-	const struct soup_corner *corners = polygon->corners;
-	int rc = add_triangle(soup, &corners[polygon->left[(at + count - 1) % count]],
-			      &corners[polygon->left[at]],
-			      &corners[polygon->left[(at + 1) % count]]);
+	int rc = add_triangle(soup, polygon->corners, polygon->left[(at + count - 1) % count],
+			      polygon->left[at], polygon->left[(at + 1) % count]);
 
 	memmove(&polygon->left[at], &polygon->left[at + 1],
 		(count - at - 1) * sizeof(*polygon->left));
@@ -151,7 +159,7 @@ int soup_add(struct soup *soup, const struct soup_corner *corners, uint32_t coun
 	if (count < 3)
 		return 0;
 	if (count == 3)
-		return add_triangle(soup, &corners[0], &corners[1], &corners[2]);
+		return add_triangle(soup, corners, 0, 1, 2);
 	polygon.left = malloc(count * sizeof(*polygon.left));
 	polygon.flat = malloc(count * sizeof(*polygon.flat));
 	if (!polygon.left || !polygon.flat)
@@ -168,5 +176,6 @@ void soup_finish(struct soup *soup)
 	if (!soup)
 		return;
 	free(soup->triangles);
+	free(soup->sources);
 	*soup = (struct soup){ 0 };
 }

@@ -30,12 +30,20 @@ struct soup {
 	bool is_inside_out;     /* the shape's faces are clockwise, or place mirrors, not both */
 	uint32_t texture;       /* or SOUP_NO_TEXTURE */
 	uint64_t polygon_steps; /* spent on concave faces */
+	/* For a surface that bends: the number of the file's point at each corner, triangle by
+	 * triangle. */
+	bool keeps_sources;
+	uint32_t (*sources)[3]; /* owned */
+	uint32_t source_room;
+	const uint32_t *from; /* borrowed; of the corners that are added next */
 };
 
 /* Adds a polygon of the shape, with its corners in order; they may be concave, but lie in about one
  * plane. Four and more corners without an area give nothing. Returns 0; -EFBIG: over
  * SOUP_TRIANGLES_MAX; -ENOMEM. */
 must_check int soup_add(struct soup *soup, const struct soup_corner *corners, uint32_t count);
+/* Puts a place of the shape where the scene has it. */
+void soup_place(float out[3], const struct soup *soup, const float at[3]);
 void soup_finish(struct soup *soup); /* NULL is fine */
 
 #endif

@@ -122,13 +122,15 @@ static const char *read_corner(const struct faces *faces, uint32_t at, uint32_t 
 static int add_faces(struct soup *soup, const struct faces *faces, struct diagnostics *diagnostics)
 {
 	struct soup_corner *corners = NULL;
-	uint32_t room = 0, count = 0, face = 0;
+	uint32_t *sources = NULL;
+	uint32_t room = 0, source_room = 0, count = 0, face = 0;
 	const char *lack = NULL;
 	int64_t wrong = 0;
 	int rc = 0;
 
 	for (uint32_t at = 0; at <= faces->indices->count && rc == 0 && !lack; at++) {
 		if (at == faces->indices->count || faces->indices->integers[at] == -1) {
+			soup->from = sources;
 			rc = soup_add(soup, corners, count);
 			face += at < faces->indices->count;
 			count = 0;
@@ -136,9 +138,15 @@ static int add_faces(struct soup *soup, const struct faces *faces, struct diagno
 		}
 		rc = ARRAY_RESERVE(corners, room, (uint64_t)count + 1, CORNERS_MAX);
 		if (rc == 0)
+			rc = ARRAY_RESERVE(sources, source_room, (uint64_t)count + 1, CORNERS_MAX);
+		if (rc == 0)
+			sources[count] = (uint32_t)faces->indices->integers[at];
+		if (rc == 0)
 			lack = read_corner(faces, at, face, &corners[count++], &wrong);
 	}
 	free(corners);
+	free(sources);
+	soup->from = NULL;
 	if (lack)
 		return diagnostics_add(diagnostics, -EBADMSG, faces->node->file, faces->node->line,
 				       "face %u of this IndexedFaceSet names %s %lld, which it "

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "pipeline/scene/vrml_bends.h"
+#include "pipeline/scene/vrml_drags.h"
 #include "pipeline/scene/vrml_graph.h"
 
 enum { INSTANCES_MAX = 1 << 14, ROUTES_MAX = 4096 };
@@ -22,13 +24,13 @@ struct follow {
 	struct diagnostics *diagnostics, *warnings;
 };
 
-int vrml_instances_add(struct vrml_instances *instances, const struct vrml_node *of, uint32_t node)
+int vrml_instances_add(struct vrml_instances *instances, const struct vrml_instance *instance)
 {
 	int rc = ARRAY_RESERVE(instances->items, instances->room, (uint64_t)instances->count + 1,
 			       INSTANCES_MAX);
 
 	if (rc == 0)
-		instances->items[instances->count++] = (struct vrml_instance){ of, node };
+		instances->items[instances->count++] = *instance;
 	return rc;
 }
 
@@ -58,6 +60,9 @@ static const struct sink {
 	{ "PositionInterpolator", "Transform", "scale", SCENERY_SCALE, 3 },
 	{ "OrientationInterpolator", "Transform", "rotation", SCENERY_TURN, 4 },
 	{ "ScalarInterpolator", "Material", "transparency", SCENERY_OPACITY, 1 },
+	{ "ColorInterpolator", "Material", "diffuseColor", SCENERY_COLOUR, 3 },
+	{ "ColorInterpolator", "Material", "emissiveColor", SCENERY_GLOW, 3 },
+	{ "CoordinateInterpolator", "Coordinate", "point", SCENERY_SHAPE, 1 },
 };
 
 static void set_value(float *out, const struct sink *sink, const float *from)
@@ -104,25 +109,69 @@ int vrml_keys(const struct vrml_node *interpolator, uint32_t width, const struct
 		     : 0;
 }
 
-static int add_tracks(const struct follow *follow, const struct vrml_node *interpolator,
-		      const struct vrml_node *target, const struct sink *sink)
+/* Adds the track of a number or a vector for each key. */
+static int add_values(const struct follow *follow, const struct vrml_node *interpolator,
+		      uint32_t node, const struct sink *sink)
 {
 	const struct vrml_value *keys, *values;
 	const uint32_t wide = scenery_width(sink->target);
+	float *out;
 	int rc = vrml_keys(interpolator, sink->width, &keys, &values, follow->diagnostics);
 
-	for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++) {
-		const struct vrml_instance *instance = &follow->instances->items[i];
-		float *out;
-
-		if (instance->of != target)
-			continue;
-		rc = scenery_add_track(follow->maker, instance->node, sink->target, keys->floats,
-				       keys->count, &out);
-		for (uint32_t k = 0; rc == 0 && k < keys->count; k++)
-			set_value(&out[k * wide], sink, &values->floats[k * sink->width]);
-	}
+	if (rc == 0)
+		rc = scenery_add_track(follow->maker, node, sink->target, keys->floats, keys->count,
+				       &out);
+	for (uint32_t k = 0; rc == 0 && k < keys->count; k++)
+		set_value(&out[k * wide], sink, &values->floats[k * sink->width]);
 	return rc;
+}
+
+/* Adds what an interpolator sets of one instance. */
+static int add_track(const struct follow *follow, const struct vrml_node *interpolator,
+		     const struct vrml_instance *instance, const struct sink *sink)
+{
+	enum scenery_target target = sink->target;
+
+	switch (target) {
+	case SCENERY_SHAPE:
+		return instance->bender == interpolator
+			       ? vrml_bent_track(follow->maker, instance->node, interpolator,
+						 follow->diagnostics)
+			       : 0;
+	case SCENERY_COLOUR:
+	case SCENERY_GLOW:
+		if (instance->is_lines)
+			target = target == SCENERY_GLOW ? SCENERY_COLOUR : SCENERY_TARGETS;
+		if (target == SCENERY_TARGETS ||
+		    (target == SCENERY_COLOUR && instance->has_own_colours))
+			return 0; /* it has no effect on this surface */
+		return vrml_colour_track(follow->maker, instance->node, target, interpolator,
+					 follow->diagnostics);
+	default:
+		return add_values(follow, interpolator, instance->node, sink);
+	}
+}
+
+static int add_tracks(const struct follow *follow, const struct vrml_node *interpolator,
+		      const struct vrml_node *target, const struct sink *sink)
+{
+	int rc = 0;
+
+	for (uint32_t i = 0; i < follow->instances->count && rc == 0; i++)
+		if (follow->instances->items[i].of == target)
+			rc = add_track(follow, interpolator, &follow->instances->items[i], sink);
+	return rc;
+}
+
+/* Whether a route goes to points that bend, and not by this interpolator; or that do not. */
+static bool bends_nothing(const struct follow *follow, const struct vrml_node *interpolator,
+			  const struct vrml_node *target)
+{
+	for (uint32_t i = 0; i < follow->instances->count; i++)
+		if (follow->instances->items[i].of == target &&
+		    follow->instances->items[i].bender == interpolator)
+			return false;
+	return true;
 }
 
 /* Whether a route moves a Viewpoint: that is the way of a tour (vrml_views.h), and no motion. */
@@ -148,7 +197,9 @@ static int follow_interpolator(const struct follow *follow, const struct vrml_no
 
 			if (!vrml_is(interpolator, sink->interpolator) ||
 			    !leads(follow->routes[r], interpolator, "value_changed", sink->node,
-				   sink->field))
+				   sink->field) ||
+			    (sink->target == SCENERY_SHAPE &&
+			     bends_nothing(follow, interpolator, *follow->routes[r]->to)))
 				continue;
 			follow->used[r] = true;
 			rc = add_tracks(follow, interpolator, *follow->routes[r]->to, sink);
@@ -268,6 +319,12 @@ static int follow_all(const struct follow *follow)
 			rc = follow_timer(follow, from);
 	}
 	scenery_find_returns(follow->maker, first);
+	for (uint32_t r = 0; r < follow->count && rc >= 0; r++) {
+		rc = vrml_drags_add(follow->maker, follow->routes[r], follow->instances,
+				    follow->diagnostics, follow->warnings);
+		follow->used[r] |= rc == 1;
+	}
+	rc = rc > 0 ? 0 : rc;
 	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
 		if (!follow->used[r])
 			diagnostics_add(follow->warnings, 0, follow->routes[r]->file,

@@ -11,6 +11,10 @@
 struct vrml_instance {
 	const struct vrml_node *of;
 	uint32_t node;
+	/* Of a Material: its surface has colours of its own, or is points and lines, which have the
+	 * colour in which they shine. */
+	bool has_own_colours, is_lines;
+	const struct vrml_node *bender; /* of a Coordinate: vrml_bender_of; else NULL */
 };
 
 /* Zeroed is empty. */
@@ -20,8 +24,8 @@ struct vrml_instances {
 };
 
 /* Returns 0, -EFBIG or -ENOMEM. */
-must_check int vrml_instances_add(struct vrml_instances *instances, const struct vrml_node *of,
-				  uint32_t node);
+must_check int vrml_instances_add(struct vrml_instances *instances,
+				  const struct vrml_instance *instance);
 void vrml_instances_finish(struct vrml_instances *instances);
 
 /* Gets the keys and the values, of `width` numbers each, of an interpolator. -EBADMSG, with a

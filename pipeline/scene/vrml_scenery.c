@@ -9,6 +9,8 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_image.h"
 #include "pipeline/scene/scenery_look.h"
+#include "pipeline/scene/vrml_bends.h"
+#include "pipeline/scene/vrml_drags.h"
 #include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_graph.h"
 #include "pipeline/scene/vrml_motions.h"
@@ -19,6 +21,7 @@ enum moving { STILL, MOVING, TARGET /* moves, and what is above it is not judged
 
 struct walk {
 	struct scenery_maker *maker;
+	const struct vrml *scene;
 	struct vrml_instances instances;
 	struct map moving; /* node -> enum moving; none: not judged yet */
 	struct diagnostics *diagnostics, *warnings;
@@ -44,16 +47,21 @@ static int fail(const struct walk *walk, int rc, const struct vrml_node *node)
 
 /* ---- what moves */
 
-static int mark_targets(struct walk *walk, const struct vrml *scene)
+static int mark_targets(struct walk *walk)
 {
 	int rc = 0;
 
-	for (const struct vrml_route *route = scene->routes; route && rc == 0;
+	for (const struct vrml_route *route = walk->scene->routes; route && rc == 0;
 	     route = route->before)
 		if (*route->to &&
 		    (vrml_is(*route->to, "Transform") || vrml_is(*route->to, "Material")))
 			rc = map_set(&walk->moving, key_of(*route->to), TARGET);
 	return rc;
+}
+
+static bool is_sensor(const struct vrml_node *node)
+{
+	return vrml_is(node, "TouchSensor") || vrml_is_drag_sensor(node);
 }
 
 static bool has_sensor(const struct vrml_node *node)
@@ -62,7 +70,7 @@ static bool has_sensor(const struct vrml_node *node)
 	struct vrml_node *const *children = vrml_children(node, &count);
 
 	for (uint32_t i = 0; i < count; i++)
-		if (vrml_is(children[i], "TouchSensor"))
+		if (is_sensor(children[i]))
 			return true;
 	return false;
 }
@@ -72,6 +80,23 @@ static bool is_moving(const struct walk *walk, const struct vrml_node *node)
 	uint64_t found = map_get(&walk->moving, key_of(node));
 
 	return found == MOVING || found == TARGET;
+}
+
+/* Returns the interpolator that bends a Shape; NULL: none. */
+static const struct vrml_node *bender_of(const struct walk *walk, const struct vrml_node *shape)
+{
+	const struct vrml_node *geometry = vrml_get_node(shape, "geometry");
+
+	return geometry ? vrml_bender_of(walk->scene, geometry) : NULL;
+}
+
+/* Whether a route sets a field of a node. */
+static bool is_set(const struct walk *walk, const struct vrml_node *node, const char *field)
+{
+	for (const struct vrml_route *route = walk->scene->routes; route; route = route->before)
+		if (*route->to == node && vrml_event_sets(route->in, field))
+			return true;
+	return false;
 }
 
 /* Marks the nodes above what moves. Each is judged once. */
@@ -95,7 +120,8 @@ static int mark(struct walk *walk, const struct vrml_node *node)
 			   ? vrml_node_of(vrml_node_of(node, "appearance", "Appearance"),
 					  "material", "Material")
 			   : NULL;
-	moves = moves || (material && is_moving(walk, material));
+	moves = moves || (material && is_moving(walk, material)) ||
+		(vrml_is(node, "Shape") && bender_of(walk, node));
 	children = vrml_children(node, &count);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
 		rc = mark(walk, children[i]);
@@ -128,6 +154,12 @@ static void get_place(struct scenery_place *out, const struct vrml_node *node)
 	get_turn(out->stretch, node, "scaleOrientation");
 }
 
+static int note(struct walk *walk, const struct vrml_node *of, uint32_t node)
+{
+	return vrml_instances_add(&walk->instances,
+				  &(struct vrml_instance){ .of = of, .node = node });
+}
+
 /* Adds a node for one of the scene, and notes that it stands for it. */
 static int add_node(struct walk *walk, const struct vrml_node *of, uint32_t parent,
 		    uint32_t *number)
@@ -141,7 +173,7 @@ static int add_node(struct walk *walk, const struct vrml_node *of, uint32_t pare
 		get_place(&node.place, of);
 	rc = scenery_add_node(walk->maker, &node, number);
 	if (rc == 0)
-		rc = vrml_instances_add(&walk->instances, of, *number);
+		rc = note(walk, of, *number);
 	return rc;
 }
 
@@ -293,7 +325,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 {
 	const struct vrml_node *look = vrml_node_of(shape, "appearance", "Appearance");
 	const struct vrml_node *material = vrml_node_of(look, "material", "Material");
-	const struct vrml_node *geometry = vrml_get_node(shape, "geometry");
+	const struct vrml_node *geometry = vrml_get_node(shape, "geometry"), *bender;
 	struct soup soup = { .texture = SOUP_NO_TEXTURE };
 	struct scenery_material kept;
 	uint8_t rgb[3];
@@ -303,10 +335,12 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 		return 0;
 	get_material(&kept, rgb, material, geometry);
 	add_look(walk, &kept, rgb, look, material);
-	if (material && is_moving(walk, material))
+	if (material && is_set(walk, material, "transparency"))
 		kept.opacity = 1; /* its node's */
 	if (!is_visible(&kept))
 		return 0;
+	bender = bender_of(walk, shape);
+	soup.keeps_sources = bender != NULL;
 	has_picture = get_picture(walk, look);
 	if (has_picture < 0)
 		return fail(walk, has_picture, shape);
@@ -319,12 +353,51 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 		scenery_look_grain(&kept, &soup, &walk->maker->out.nodes[walk->root].place);
 		if (has_picture)
 			prepare(&walk->picture, &soup, look);
-		rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles, soup.count,
-					 crease_of(geometry), has_picture ? &walk->picture : NULL);
-		if (rc < 0)
+		if (bender)
+			rc = vrml_bent_add(walk->maker, node, &kept, &soup, crease_of(geometry),
+					   geometry, bender, walk->diagnostics);
+		else
+			rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles,
+						 soup.count, crease_of(geometry),
+						 has_picture ? &walk->picture : NULL);
+		if (rc == -EFBIG || rc == -ENOMEM)
 			rc = fail(walk, rc, geometry);
+		if (bender && has_picture)
+			diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
+					"what bends has no picture here; it was left out");
 	}
 	soup_finish(&soup);
+	return rc;
+}
+
+/* Adds a node for a shape whose Material or points change, below *node, which is set to it. */
+static int add_shape_node(struct walk *walk, const struct vrml_node *shape,
+			  const struct vrml_node *material, uint32_t *node)
+{
+	const struct vrml_node *geometry = vrml_get_node(shape, "geometry");
+	const struct vrml_node *look = vrml_node_of(shape, "appearance", "Appearance");
+	const struct vrml_node *bender = bender_of(walk, shape);
+	struct vrml_instance of_material = { .of = material };
+	const struct scenery_node own = { .parent = *node,
+					  .layer = SCENERY_NONE,
+					  .place = scenery_at_rest };
+	int rc = scenery_add_node(walk->maker, &own, node);
+
+	of_material.node = *node;
+	of_material.is_lines =
+		geometry && (vrml_is(geometry, "PointSet") || vrml_is(geometry, "IndexedLineSet"));
+	of_material.has_own_colours =
+		(look && vrml_get_node(look, "texture")) ||
+		(geometry && vrml_field_named(geometry->type, "color", 5) >= 0 &&
+		 vrml_get_node(geometry, "color"));
+	if (rc == 0 && material)
+		rc = vrml_instances_add(&walk->instances, &of_material);
+	if (rc == 0 && bender)
+		rc = vrml_instances_add(
+			&walk->instances,
+			&(struct vrml_instance){ .of = vrml_get_node(geometry, "coord"),
+						 .node = *node,
+						 .bender = bender });
 	return rc;
 }
 
@@ -334,8 +407,8 @@ static int add_shape(struct walk *walk, const struct vrml_node *shape, uint32_t 
 	const struct vrml_node *material = vrml_node_of(
 		vrml_node_of(shape, "appearance", "Appearance"), "material", "Material");
 
-	if (material && is_moving(walk, material)) {
-		int rc = add_node(walk, material, node, &node);
+	if ((material && is_moving(walk, material)) || bender_of(walk, shape)) {
+		int rc = add_shape_node(walk, shape, material, &node);
 
 		if (rc < 0)
 			return fail(walk, rc, shape);
@@ -371,15 +444,15 @@ static void add_fog(const struct walk *walk, const struct vrml_node *node)
 
 /* ---- groups */
 
-/* Notes which node a touch sensor beside these children answers for. */
+/* Notes which node a sensor beside these children answers for. */
 static int note_sensors(struct walk *walk, struct vrml_node *const *children, uint32_t count,
 			uint32_t node)
 {
 	int rc = 0;
 
 	for (uint32_t i = 0; i < count && rc == 0; i++)
-		if (vrml_is(children[i], "TouchSensor"))
-			rc = vrml_instances_add(&walk->instances, children[i], node);
+		if (is_sensor(children[i]))
+			rc = note(walk, children[i], node);
 	return rc;
 }
 
@@ -420,9 +493,10 @@ static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
 	return rc;
 }
 
-static int add_all(struct walk *walk, const struct vrml *scene, uint32_t node)
+static int add_all(struct walk *walk, uint32_t node)
 {
-	int rc = mark_targets(walk, scene);
+	const struct vrml *scene = walk->scene;
+	int rc = mark_targets(walk);
 
 	for (uint32_t i = 0; i < scene->root_count && rc == 0; i++)
 		rc = mark(walk, scene->roots[i]);
@@ -440,13 +514,14 @@ int vrml_scenery_add(struct scenery_maker *maker, const struct vrml *scene, uint
 		     const struct vrml_options *options, struct diagnostics *diagnostics,
 		     struct diagnostics *warnings)
 {
-	struct walk walk = { .options = options,
+	struct walk walk = { .scene = scene,
+			     .options = options,
 			     .maker = maker,
 			     .root = node,
 			     .diagnostics = diagnostics,
 			     .warnings = warnings };
 	const uint32_t errors = diagnostics ? diagnostics->error_count : 0;
-	int rc = add_all(&walk, scene, node);
+	int rc = add_all(&walk, node);
 
 	if (rc < 0 && scene->root_count > 0 && diagnostics && diagnostics->error_count == errors)
 		fail(&walk, rc, scene->roots[0]);

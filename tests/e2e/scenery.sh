@@ -1,6 +1,6 @@
 #!/bin/bash
 # A visitor chooses a layer of what stands beside the scan, opens a door of VRML97 and turns a board of glTF by touching
-# them.
+# them, slides a bolt with a finger, and makes a banner flap and redden.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -9,12 +9,12 @@ rm -rf "$work"
 mkdir -p "$work"
 small_release
 cp -a "$small/content" "$work/content"
-cp tests/e2e/board.gltf "$work/content/scenes/"
-sed -i 's|^  "scenes": \[|  "scenes": [\n    {"file": "scenes/board.gltf", "plays": "touch"},|' "$work/content/scenes.json"
+cp tests/e2e/board.gltf tests/e2e/bolt.wrl "$work/content/scenes/"
+sed -i 's|^  "scenes": \[|  "scenes": [\n    {"file": "scenes/board.gltf", "plays": "touch"},\n    {"file": "scenes/bolt.wrl", "up": "z"},|' "$work/content/scenes.json"
 build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >"$work/build.log" 2>&1 ||
 	{ cat "$work/build.log"; fail "no release with a glTF scene"; }
 # At 960 x 540: somebody comes; "As built" at the right end of the bar's line; the door in the eastern gallery; the board
-# beside it.
+# beside it; the bolt at the left, which is drawn to the right; the banner.
 cat >"$work/fingers.touch" <<'T'
 20000 down 0 480 20
 20080 up 0
@@ -24,14 +24,26 @@ cat >"$work/fingers.touch" <<'T'
 28080 up 0
 32500 down 0 750 285
 32580 up 0
+36500 down 0 300 200
+36600 move 0 330 201
+36700 move 0 380 203
+37200 move 0 381 203
+37300 up 0
+39500 down 0 440 150
+39580 up 0
 T
-printf '%s\n' '23000 found' '26500 built' '31500 opened' '35500 turned' >"$work/shots.txt"
+printf '%s\n' '23000 found' '26500 built' '31500 opened' '35500 turned' '38900 slid' '42500 flapped' >"$work/shots.txt"
 build/tests/tools/hurried_kiosk --fetch build/gopura-fetch --locale build/locale --display headless \
 	--size 960x540 --release "$work/release" --trust "$work/release/root/1.json" --state "$work/state" \
 	--log debug --idle-s 8 --touch-replay "$work/fingers.touch" --capture "$work/shots" --shots "$work/shots.txt" \
 	>"$work/seen.json" 2>"$work/kiosk.log" || { tail -n 20 "$work/kiosk.log"; fail "the kiosk ended with an error"; }
-[ "$(grep -oE 'app: (layer 1|the scenery was touched|card of.*)' "$work/kiosk.log" | paste -sd,)" = \
-	"app: layer 1,app: the scenery was touched,app: the scenery was touched" ] || { grep app: "$work/kiosk.log"; fail "the touches did something else"; }
+[ "$(grep -oE 'app: (layer 1|the scenery (was touched|is held|is let go)|card of.*)' "$work/kiosk.log" | paste -sd,)" = \
+	"app: layer 1,app: the scenery was touched,app: the scenery was touched,app: the scenery is held,app: the scenery is let go,app: the scenery was touched" ] || { grep app: "$work/kiosk.log"; fail "the touches did something else"; }
 ! cmp -s "$work/shots/found.png" "$work/shots/built.png" || fail "the layers look alike"
 ! cmp -s "$work/shots/built.png" "$work/shots/opened.png" || fail "the door did not move"
 ! cmp -s "$work/shots/opened.png" "$work/shots/turned.png" || fail "the board did not turn"
+# The eye stood still while the finger drew.
+[ "$(grep -oE 'drag (begins|ends): eye at [-0-9. ]+' "$work/kiosk.log" | sed 's/.*: eye/eye/' | sort -u | wc -l)" = 1 ] ||
+	fail "the eye went with the bolt"
+! cmp -s "$work/shots/turned.png" "$work/shots/slid.png" || fail "the bolt did not slide"
+! cmp -s "$work/shots/slid.png" "$work/shots/flapped.png" || fail "the banner did not flap"

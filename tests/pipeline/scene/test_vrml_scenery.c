@@ -98,6 +98,144 @@ static void a_node_that_is_used_twice_moves_twice(void **state)
 	scenery_finish(&s);
 }
 
+/* A bolt that slides along x, a wheel, and a globe; and a sensor that leads nowhere. */
+static void what_a_finger_drags_is_kept_with_its_limits(void **state)
+{
+	static const char bolt[] = HEAD
+		"Transform { translation 0 1 0 children [\n"
+		"  DEF P PlaneSensor { minPosition 0 0 maxPosition 0.3 0 offset 0.1 0 2 }\n"
+		"  DEF Bolt Transform { children Shape { geometry Box {} } } ] }\n"
+		"Group { children [ DEF C CylinderSensor { minAngle -1 maxAngle 2 diskAngle 9\n"
+		"    autoOffset FALSE }\n"
+		"  DEF Wheel Transform { children Shape { geometry Cylinder {} } } ] }\n"
+		"DEF S SphereSensor { offset 0 0 1 3.1415927 }\n"
+		"DEF Globe Transform { children Shape { geometry Sphere {} } }\n"
+		"ROUTE P.translation_changed TO Bolt.set_translation\n"
+		"ROUTE C.rotation_changed TO Wheel.rotation\n"
+		"ROUTE S.rotation_changed TO Globe.rotation\n"
+		"ROUTE S.trackPoint_changed TO Globe.translation\n";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const struct scenery_drag *plane, *cylinder, *sphere;
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, bolt, &diagnostics, &warnings) == 0);
+	CHECK(warnings.count == 1 &&
+	      strstr(warnings.first.text, "a.wrl:13: ROUTE from trackPoint"));
+	CHECK(s.drag_count == 3 && s.motion_count == 0);
+	plane = s.drags;
+	CHECK(plane->kind == SCENERY_DRAG_PLANE && plane->keeps);
+	CHECK(s.nodes[plane->node].parent == plane->handle);
+	CHECK(s.nodes[plane->handle].place.move_m[1] == 1);
+	CHECK(plane->high[0] == 0.3f && plane->low[1] == 0 && plane->high[1] == 0);
+	CHECK(plane->offset[0] == 0.1f && plane->offset[2] == 2);
+	cylinder = &s.drags[1];
+	CHECK(cylinder->kind == SCENERY_DRAG_CYLINDER && !cylinder->keeps);
+	CHECK(cylinder->low[0] == -1 && cylinder->high[0] == 2 && cylinder->disc_rad < 1.571f);
+	sphere = &s.drags[2];
+	CHECK(sphere->kind == SCENERY_DRAG_SPHERE && sphere->handle == 0);
+	CHECK(fabsf(sphere->offset[2] - 1) < 1e-4f);
+	scenery_finish(&s);
+}
+
+static void a_faulty_drag_is_named_with_file_and_line(void **state)
+{
+#define SLIDE(sensor)                                                                              \
+	HEAD "DEF M Transform { children Shape { geometry Box {} } }\n" sensor                     \
+	     "\nROUTE P.translation_changed TO M.translation"
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, SLIDE("DEF P PlaneSensor { maxPosition 1e9 1 }"), &diagnostics, &warnings) ==
+	      -EBADMSG);
+	CHECK(strstr(diagnostics.first.text,
+		     "a.wrl:3: the limits or the offset of this PlaneSensor"));
+	CHECK(make(&s, SLIDE("DEF P PlaneSensor { enabled FALSE }"), &diagnostics, &warnings) == 0);
+	CHECK(s.drag_count == 0 && strstr(warnings.first.text, "a.wrl:3: this PlaneSensor is not"));
+	scenery_finish(&s);
+}
+
+/* A flag of one face with four corners flaps: its two keys are two shapes. */
+static void points_that_move_are_shapes_of_a_mesh(void **state)
+{
+#define FLAG                                                                                       \
+	HEAD "Group { children [ DEF T TouchSensor {}\n"                                           \
+	     "Shape { geometry IndexedFaceSet { coordIndex [ 0 1 2 3 -1 ] solid FALSE\n"           \
+	     "  coord DEF F Coordinate { point [ 0 0 0, 2 0 0, 2 1 0, 0 1 0 ] } } } ] }\n"         \
+	     "DEF C TimeSensor { cycleInterval 3 }\n"
+#define ROUTES                                                                                     \
+	"ROUTE T.touchTime TO C.startTime ROUTE C.fraction_changed TO I.set_fraction\n"            \
+	"ROUTE I.value_changed TO F.set_point\n"
+	static const char flag[] =
+		FLAG "DEF I CoordinateInterpolator { key [ 0 1 ] keyValue [\n"
+		     "  0 0 0, 2 0 0, 2 1 0, 0 1 0,  0 0 0, 2 0 4, 2 1 4, 0 1 0 ] }\n" ROUTES;
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const struct scenery_mesh *mesh;
+	struct scenery s;
+	float deepest = 0;
+
+	(void)state;
+	CHECK(make(&s, flag, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.mesh_count == 1 && s.track_count == 1 && s.tracks[0].target == SCENERY_SHAPE);
+	mesh = s.meshes;
+	CHECK(mesh->node == s.tracks[0].node && mesh->shape_count == 2);
+	CHECK(mesh->vertex_count == 4 && mesh->triangle_count == 2);
+	CHECK(s.numbers[s.tracks[0].first + 2] == 0 && s.numbers[s.tracks[0].first + 3] == 1);
+	for (uint32_t v = 0; v < 4; v++) {
+		const struct scenery_shape_vertex *bent = &mesh->shapes[4 + v];
+		const float z = mesh->origin_m[2] + mesh->step_m * (float)bent->place[2];
+
+		CHECK(memcmp(mesh->shapes[v].place, mesh->vertices[v].place, 6) == 0);
+		/* What moved is at x = 2, and the light on all of it changed. */
+		CHECK(fabsf(z - (bent->place[0] > 0 ? 4 : 0)) < 1e-3f);
+		CHECK(memcmp(bent->normal, mesh->vertices[v].normal, 2) != 0);
+		deepest = fmaxf(deepest, z);
+	}
+	CHECK(deepest > 3.9f && s.motions[0].returns);
+	scenery_finish(&s);
+
+	CHECK(make(&s, FLAG "DEF I CoordinateInterpolator { key [ 0 1 ] keyValue 0 0 0 }\n" ROUTES,
+		   &diagnostics, &warnings) == -EBADMSG);
+	CHECK(strstr(diagnostics.first.text, "a.wrl:6: CoordinateInterpolator has another number"));
+}
+
+/* From red to green by yellow, and a glow; a box with colours at its corners keeps these. */
+static void colours_go_by_their_hue(void **state)
+{
+	static const char lamp[] = HEAD
+		"Shape { geometry Box {} appearance DEF A Appearance { material DEF M Material {\n"
+		"  transparency 0.5 diffuseColor 1 0 0 } } }\n"
+		"Shape { appearance USE A geometry IndexedFaceSet { coordIndex [ 0 1 2 ]\n"
+		"  coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0 ] }\n"
+		"  color Color { color [ 0 0 1, 0 0 1, 0 0 1 ] } } }\n"
+		"DEF C TimeSensor { loop TRUE }\n"
+		"DEF D ColorInterpolator { key [ 0 1 ] keyValue [ 1 0 0, 0 1 0 ] }\n"
+		"DEF E ColorInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 0 1 ] }\n"
+		"ROUTE C.fraction_changed TO D.set_fraction\n"
+		"ROUTE C.fraction_changed TO E.set_fraction\n"
+		"ROUTE D.value_changed TO M.diffuseColor\n"
+		"ROUTE E.value_changed TO M.set_emissiveColor\n";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const float *values;
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, lamp, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.track_count == 3 && s.tracks[0].target == SCENERY_COLOUR);
+	CHECK(s.tracks[1].target == SCENERY_GLOW && s.tracks[2].target == SCENERY_GLOW);
+	CHECK(s.tracks[0].node == s.meshes[0].node && s.meshes[0].triangle_count == 12);
+	CHECK(s.materials[s.meshes[0].material].opacity == 0.5f);
+	CHECK(s.tracks[0].key_count == 9);
+	values = &s.numbers[s.tracks[0].first + 9];
+	CHECK(values[0] == 1 && values[1] == 0 && values[3 * 8] == 0 && values[3 * 8 + 1] == 1);
+	CHECK(fabsf(values[3 * 4] - 1) < 1e-4f && fabsf(values[3 * 4 + 1] - 1) < 1e-4f);
+	CHECK(values[3 * 4 + 2] == 0);
+	values = &s.numbers[s.tracks[1].first + 9];
+	CHECK(fabsf(values[3 * 4 + 2] - 0.5f) < 1e-4f && values[3 * 4] == 0);
+	scenery_finish(&s);
+}
+
 static void what_becomes_transparent_is_a_node(void **state)
 {
 	static const char fading[] = HEAD
@@ -257,6 +395,10 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_door_turns_on_its_hinge_when_it_is_touched),
 		cmocka_unit_test(a_node_that_is_used_twice_moves_twice),
+		cmocka_unit_test(what_a_finger_drags_is_kept_with_its_limits),
+		cmocka_unit_test(a_faulty_drag_is_named_with_file_and_line),
+		cmocka_unit_test(points_that_move_are_shapes_of_a_mesh),
+		cmocka_unit_test(colours_go_by_their_hue),
 		cmocka_unit_test(what_becomes_transparent_is_a_node),
 		cmocka_unit_test(a_material_is_kept_with_its_highlight_and_transparency),
 		cmocka_unit_test(the_first_fog_is_kept_in_metres),
