@@ -1,4 +1,4 @@
-/* Reads VRML97 and glTF files as scenery, and the views in VRML97 files. */
+/* Reads VRML97 and glTF files as scenery, and the views in them. */
 #include "pipeline/import/import_scenery.h"
 
 #include <errno.h>
@@ -11,6 +11,7 @@
 #include "pipeline/import/gltf_extensions.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/scene/gltf_scenery.h"
+#include "pipeline/scene/gltf_views.h"
 #include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_text.h"
 #include "pipeline/scene/vrml_views.h"
@@ -170,7 +171,7 @@ static bool is_near(const float at_m[3])
 	return true;
 }
 
-static int take_views(struct import_views *out, const struct vrml_views *views, const char *path,
+static int take_views(struct import_views *out, const struct scene_views *views, const char *path,
 		      const struct import_options *options, struct diagnostics *diagnostics)
 {
 	const struct scenery_node node = node_of(SCENERY_NONE, options);
@@ -191,40 +192,63 @@ static int take_views(struct import_views *out, const struct vrml_views *views, 
 		vec_add_scaled(to->target_m, to->eye_m, 1, ahead);
 		if (!is_near(to->eye_m) || !is_near(to->target_m))
 			return diagnostics_add(diagnostics, -EINVAL, path, 0,
-					       "a Viewpoint stands over %d m away; correct its "
+					       "a camera stands over %d m away; correct its "
 					       "place, or the scene's unit",
 					       SCENERY_PLACE_MAX);
 	}
 	return 0;
 }
 
-int import_scenery_views(struct import_views *out, const char *path, const char *description,
-			 const struct import_options *options, struct diagnostics *diagnostics)
+static int read_vrml_views(struct scene_views *out, struct scene_file *file,
+			   const char *description, struct diagnostics *diagnostics)
 {
 	struct diagnostics warnings = { 0 }; /* import_scenery gives them */
-	struct vrml_views views = { 0 };
 	struct vrml *scene = NULL;
+	int rc = read_vrml(&scene, file, diagnostics, &warnings);
+
+	if (rc == 0)
+		rc = vrml_views_read(out, scene, description, diagnostics);
+	vrml_destroy(scene);
+	diagnostics_finish(&warnings);
+	return rc;
+}
+
+static int read_gltf_views(struct scene_views *out, struct scene_file *file, const char *scene,
+			   const char *name, struct diagnostics *diagnostics)
+{
+	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
+	struct gltf gltf = { 0 };
+	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+
+	if (rc == 0)
+		rc = gltf_read(&gltf, buffer_bytes(&file->bytes), file->path, &options,
+			       diagnostics);
+	if (rc == 0)
+		rc = gltf_views_read(out, &gltf, scene, name);
+	gltf_finish(&gltf);
+	return rc;
+}
+
+int import_scenery_views(struct import_views *out, const char *path, const char *name,
+			 const struct import_options *options, const char *scene,
+			 struct diagnostics *diagnostics)
+{
+	struct scene_views views = { 0 };
 	struct scene_file file;
 	int rc = open_scene(&file, path, diagnostics);
 
 	*out = (struct import_views){ 0 };
-	if (rc == 0 && file.format != SCAN_VRML)
-		rc = diagnostics_add(diagnostics, -EINVAL, path, 0,
-				     "only Viewpoints of VRML97 files become tours; save its "
-				     "camera as one");
 	if (rc == 0)
-		rc = read_vrml(&scene, &file, diagnostics, &warnings);
-	if (rc == 0)
-		rc = vrml_views_read(&views, scene, description, diagnostics);
+		rc = file.format == SCAN_VRML
+			     ? read_vrml_views(&views, &file, name, diagnostics)
+			     : read_gltf_views(&views, &file, scene, name, diagnostics);
 	if (rc == 0)
 		rc = take_views(out, &views, path, options, diagnostics);
 	if (rc < 0) {
 		free(out->items);
 		*out = (struct import_views){ 0 };
 	}
-	vrml_views_finish(&views);
-	vrml_destroy(scene);
+	scene_views_finish(&views);
 	close_scene(&file);
-	diagnostics_finish(&warnings);
 	return rc;
 }

@@ -23,20 +23,20 @@ must_check int import_scenery(struct scenery_maker *maker, const char *path, uin
 /* A view of a scene, in metres with z up. */
 struct import_view {
 	float eye_m[3], target_m[3]; /* a metre apart */
-	float time_s;                /* of a way: since it began; ascends */
+	float time_s; /* of a way: since it began; ascends, and stays where it jumps */
 };
 
 struct import_views {
 	struct import_view *items; /* owned; free() it */
 	uint32_t count;
-	bool is_way; /* one moving Viewpoint at the times of its keys; else several that stand */
+	bool is_way; /* one moving camera at the times of its keys; else several that stand */
 };
 
-/* Gets the views of the scene at path: the way of its moving Viewpoint with that description, or
- * NULL, as vrml_views_read chooses. Errors as import_scenery, also where a view is farther away
- * than SCENERY_PLACE_MAX metres. */
-must_check int import_scenery_views(struct import_views *out, const char *path,
-				    const char *description, const struct import_options *options,
+/* Gets the views of the scene at path: the way of its moving Viewpoint or camera of that name, or
+ * NULL, as vrml_views_read and gltf_views_read choose. scene: as import_scene's name. Errors as
+ * import_scenery, also where a view is farther away than SCENERY_PLACE_MAX metres. */
+must_check int import_scenery_views(struct import_views *out, const char *path, const char *name,
+				    const struct import_options *options, const char *scene,
 				    struct diagnostics *diagnostics);
 
 #endif

@@ -63,7 +63,7 @@ static int list_all(struct gltf *gltf)
 		[GLTF_MESHES] = "meshes",         [GLTF_MATERIALS] = "materials",
 		[GLTF_ACCESSORS] = "accessors",   [GLTF_VIEWS] = "bufferViews",
 		[GLTF_ANIMATIONS] = "animations", [GLTF_TEXTURES] = "textures",
-		[GLTF_IMAGES] = "images",
+		[GLTF_IMAGES] = "images",         [GLTF_CAMERAS] = "cameras",
 	};
 	int rc = 0;
 

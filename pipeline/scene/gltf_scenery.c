@@ -9,16 +9,18 @@
 
 #include "geometry/vec.h"
 #include "pipeline/scene/gltf_motions.h"
+#include "pipeline/scene/gltf_nodes.h"
 #include "pipeline/scene/scenery_look.h"
 #include "pipeline/scene/vrml_graph.h"
 
-enum { TRIANGLES = 4, STRIP = 5, FAN = 6, DEPTH_MAX = 200 };
+enum { TRIANGLES = 4, STRIP = 5, FAN = 6 };
 
 struct walk {
 	struct scenery_maker *maker;
 	const struct gltf *gltf;
 	struct diagnostics *warnings;
 	bool *moves, *was_seen; /* by node of the file */
+	bool *has_mesh;         /* itself, or a node below */
 	uint32_t *nodes;        /* of the scenery */
 	uint32_t root;          /* of the scenery, that stands for the file */
 	uint32_t depth;
@@ -26,13 +28,6 @@ struct walk {
 	struct picture picture; /* of the texture that was used last, if it could be read */
 	const cJSON *picture_of;
 };
-
-static const char *name_of(const cJSON *object)
-{
-	const char *name = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, "name"));
-
-	return name ? name : "";
-}
 
 static int fail(const struct walk *walk, int rc, const cJSON *object)
 {
@@ -42,119 +37,6 @@ static int fail(const struct walk *walk, int rc, const cJSON *object)
 	else if (rc == -ENOMEM)
 		gltf_say(walk->gltf, rc, object, "too large for this machine's memory");
 	return rc;
-}
-
-/* Reads an array of numbers; otherwise holds if it is not there. Returns false if it is faulty. */
-static bool get_floats(float *out, const cJSON *object, const char *field, int count,
-		       const float *otherwise)
-{
-	const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, field), *item;
-	int at = 0;
-
-	memcpy(out, otherwise, (size_t)count * sizeof(*out));
-	if (!array)
-		return true;
-	if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != count)
-		return false;
-	cJSON_ArrayForEach(item, array)
-	{
-		out[at] = cJSON_IsNumber(item) ? (float)item->valuedouble : NAN;
-		if (!isfinite(out[at++]))
-			return false;
-	}
-	return true;
-}
-
-/* ---- places */
-
-/* Sets a turn to that of a matrix whose columns are at right angles and of length 1. */
-static void turn_of(float out[4], const float m[16])
-{
-	const float squares[4] = { 1 + m[0] - m[5] - m[10], 1 - m[0] + m[5] - m[10],
-				   1 - m[0] - m[5] + m[10], 1 + m[0] + m[5] + m[10] };
-	int most = 0;
-	float half, scale;
-
-	for (int k = 1; k < 4; k++)
-		if (squares[k] > squares[most])
-			most = k;
-	half = sqrtf(fmaxf(squares[most], 0)) / 2;
-	scale = half > 0 ? 0.25f / half : 0;
-	out[most] = half;
-	if (most == 3) {
-		out[0] = (m[6] - m[9]) * scale;
-		out[1] = (m[8] - m[2]) * scale;
-		out[2] = (m[1] - m[4]) * scale;
-	} else {
-		const int next = (most + 1) % 3, last = (most + 2) % 3;
-
-		out[next] = (m[4 * next + most] + m[4 * most + next]) * scale;
-		out[last] = (m[4 * last + most] + m[4 * most + last]) * scale;
-		out[3] = (m[4 * next + last] - m[4 * last + next]) * scale;
-	}
-}
-
-/* Splits a matrix into the move, turn and scale that it must be made of. */
-static void split_matrix(struct scenery_place *out, float m[16])
-{
-	memcpy(out->move_m, m + 12, sizeof(out->move_m));
-	for (int column = 0; column < 3; column++) {
-		out->scale[column] = vec_length(m + 4 * column);
-		if (column == 0 && vrml_mirrors(m))
-			out->scale[0] *= -1;
-		for (int row = 0; row < 3 && out->scale[column] != 0; row++)
-			m[4 * column + row] /= out->scale[column];
-	}
-	turn_of(out->turn, m);
-}
-
-static int get_place(const struct walk *walk, struct scenery_place *out, const cJSON *node)
-{
-	static const float zero[3], one[3] = { 1, 1, 1 }, none[4] = { 0, 0, 0, 1 };
-	float m[16], length = 0;
-	bool is_good;
-
-	*out = scenery_at_rest;
-	is_good = get_floats(m, node, "matrix", 16, vrml_identity) &&
-		  get_floats(out->move_m, node, "translation", 3, zero) &&
-		  get_floats(out->turn, node, "rotation", 4, none) &&
-		  get_floats(out->scale, node, "scale", 3, one);
-	if (is_good && cJSON_HasObjectItem(node, "matrix"))
-		split_matrix(out, m);
-	for (int k = 0; k < 4; k++)
-		length += out->turn[k] * out->turn[k];
-	if (!is_good || !(length > 1e-6f && isfinite(length)))
-		return gltf_say(walk->gltf, -EBADMSG, node,
-				"node \"%.60s\" has a place that is none; export it anew",
-				name_of(node));
-	for (int k = 0; k < 4; k++)
-		out->turn[k] /= sqrtf(length);
-	return 0;
-}
-
-static void multiply(float out[16], const float parent[16], const struct scenery_place *place)
-{
-	const float *q = place->turn;
-	float own[16] = { 1 - 2 * (q[1] * q[1] + q[2] * q[2]),
-			  2 * (q[0] * q[1] + q[2] * q[3]),
-			  2 * (q[0] * q[2] - q[1] * q[3]),
-			  0,
-			  2 * (q[0] * q[1] - q[2] * q[3]),
-			  1 - 2 * (q[0] * q[0] + q[2] * q[2]),
-			  2 * (q[1] * q[2] + q[0] * q[3]),
-			  0,
-			  2 * (q[0] * q[2] + q[1] * q[3]),
-			  2 * (q[1] * q[2] - q[0] * q[3]),
-			  1 - 2 * (q[0] * q[0] + q[1] * q[1]),
-			  0,
-			  place->move_m[0],
-			  place->move_m[1],
-			  place->move_m[2],
-			  1 };
-
-	for (int i = 0; i < 12; i++)
-		own[i] *= place->scale[i / 4];
-	matrix_multiply(out, parent, own);
 }
 
 /* ---- meshes */
@@ -208,7 +90,7 @@ static void get_gloss(const struct walk *walk, struct look *out, const cJSON *pb
 		out->material.mirror = 0.6f * metal * smooth;
 		out->material.by_pixel = true;
 	}
-	scenery_look_add(walk->maker, name_of(material), &out->material);
+	scenery_look_add(walk->maker, gltf_name(material), &out->material);
 	if (out->material.substance && !cJSON_HasObjectItem(pbr, "baseColorFactor")) {
 		scenery_look_mean(out->mean, &out->material);
 		out->has_mean = true;
@@ -229,11 +111,11 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 	*out = (struct look){ .material = scenery_plain };
 	out->material.has_two_sides =
 		cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(material, "doubleSided"));
-	if (!get_floats(out->factor, pbr, "baseColorFactor", 4, white) ||
-	    !get_floats(emissive, material, "emissiveFactor", 3, black))
+	if (!gltf_floats(out->factor, pbr, "baseColorFactor", 4, white) ||
+	    !gltf_floats(emissive, material, "emissiveFactor", 3, black))
 		return gltf_say(walk->gltf, -EBADMSG, material,
 				"material \"%.60s\" has a colour that is none; export it anew",
-				name_of(material));
+				gltf_name(material));
 	for (int k = 0; k < 3; k++)
 		out->material.emissive[k] = to_byte(emissive[k]);
 	if (alpha && strcmp(alpha, "BLEND") == 0)
@@ -372,7 +254,7 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 	if (rc == -EBADMSG)
 		gltf_say(walk->gltf, rc, primitive,
 			 "mesh \"%.60s\" has indices or places that are none; export it anew",
-			 name_of(mesh));
+			 gltf_name(mesh));
 	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
 	if (rc == 0)
 		rc = scenery_add_surface(walk->maker, node, &shape.look.material, soup.triangles,
@@ -393,7 +275,7 @@ static int add_mesh(struct walk *walk, const cJSON *node, uint32_t number, const
 		return gltf_say(walk->gltf, -ENOTSUP, node,
 				"node \"%.60s\" is bent by a skin, which scenery does not have; "
 				"export it as stiff parts on nodes that move",
-				name_of(node));
+				gltf_name(node));
 	cJSON_ArrayForEach(primitive, primitives) if (rc == 0) rc =
 		add_primitive(walk, primitive, mesh, number, place, is_mirrored);
 	return rc;
@@ -401,44 +283,38 @@ static int add_mesh(struct walk *walk, const cJSON *node, uint32_t number, const
 
 /* ---- nodes */
 
-/* Returns a child of a node; NULL: it is no node. */
-static const cJSON *child_of(const struct walk *walk, const cJSON *item, uint32_t *number)
-{
-	const double at = cJSON_IsNumber(item) ? item->valuedouble : -1;
-
-	if (!(at >= 0 && at < (double)walk->gltf->lists[GLTF_NODES].count))
-		return NULL;
-	*number = (uint32_t)at;
-	return walk->gltf->lists[GLTF_NODES].items[*number];
-}
-
 /* Marks the nodes above what moves, and that each node is below one other at most. */
 static int mark(struct walk *walk, const cJSON *node, uint32_t number)
 {
 	const cJSON *children = cJSON_GetObjectItemCaseSensitive(node, "children"), *item;
 	int rc = 0;
 
-	if (walk->was_seen[number] || walk->depth == DEPTH_MAX)
+	if (walk->was_seen[number] || walk->depth == GLTF_DEPTH_MAX)
 		return gltf_say(walk->gltf, -EBADMSG, node,
 				"node \"%.60s\" is below two nodes, or over %d deep; export it "
 				"anew",
-				name_of(node), DEPTH_MAX);
+				gltf_name(node), GLTF_DEPTH_MAX);
 	walk->was_seen[number] = true;
+	walk->has_mesh[number] = cJSON_HasObjectItem(node, "mesh");
 	walk->depth++;
 	cJSON_ArrayForEach(item, children)
 	{
 		uint32_t child = 0;
-		const cJSON *of = child_of(walk, item, &child);
+		const cJSON *of = gltf_child(walk->gltf, item, &child);
 
 		if (rc == 0 && !of)
 			rc = gltf_say(walk->gltf, -EBADMSG, node,
 				      "node \"%.60s\" has a child that is none; export it anew",
-				      name_of(node));
+				      gltf_name(node));
 		if (rc == 0)
 			rc = mark(walk, of, child);
-		if (rc == 0)
+		if (rc == 0) {
 			walk->moves[number] = walk->moves[number] || walk->moves[child];
+			walk->has_mesh[number] = walk->has_mesh[number] || walk->has_mesh[child];
+		}
 	}
+	/* What shows nothing, such as a camera, is not moved: a tour may fly its way. */
+	walk->moves[number] = walk->moves[number] && walk->has_mesh[number];
 	walk->depth--;
 	return rc;
 }
@@ -449,7 +325,7 @@ static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t n
 	const cJSON *children = cJSON_GetObjectItemCaseSensitive(of, "children"), *item;
 	struct scenery_node own = { .parent = node, .layer = SCENERY_NONE };
 	float place[16];
-	int rc = get_place(walk, &own.place, of);
+	int rc = gltf_place(&own.place, walk->gltf, of);
 
 	if (rc < 0)
 		return rc;
@@ -459,7 +335,7 @@ static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t n
 		rc = scenery_add_node(walk->maker, &own, &node);
 		walk->nodes[number] = node;
 	} else {
-		multiply(place, parent, &own.place);
+		gltf_place_below(place, parent, &own.place);
 	}
 	if (rc < 0)
 		return fail(walk, rc, of);
@@ -467,7 +343,7 @@ static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t n
 	cJSON_ArrayForEach(item, children)
 	{
 		uint32_t child = 0;
-		const cJSON *below = child_of(walk, item, &child);
+		const cJSON *below = gltf_child(walk->gltf, item, &child);
 
 		if (rc == 0)
 			rc = visit(walk, below, child, node, place, is_mirrored);
@@ -476,27 +352,6 @@ static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t n
 }
 
 /* ---- scenes */
-
-/* Finds the scene; NULL with a diagnostic: there is none of that name. */
-static const cJSON *find_scene(const struct walk *walk, const char *name)
-{
-	const struct gltf *gltf = walk->gltf;
-	const cJSON *first = gltf_item(gltf, GLTF_SCENES, gltf->json.root, "scene", NULL);
-
-	for (uint32_t i = 0; name && i < gltf->lists[GLTF_SCENES].count; i++)
-		if (strcmp(name_of(gltf->lists[GLTF_SCENES].items[i]), name) == 0)
-			return gltf->lists[GLTF_SCENES].items[i];
-	if (name) {
-		gltf_say(gltf, -EINVAL, NULL,
-			 "has no scene \"%.60s\"; correct the name in scenes.json", name);
-		return NULL;
-	}
-	if (!first && gltf->lists[GLTF_SCENES].count > 0)
-		first = gltf->lists[GLTF_SCENES].items[0];
-	if (!first)
-		gltf_say(gltf, -EINVAL, NULL, "has no scene; export it with one");
-	return first;
-}
 
 static int add_scene(struct walk *walk, const cJSON *scene, uint32_t node,
 		     const struct gltf_choice *choice)
@@ -508,7 +363,7 @@ static int add_scene(struct walk *walk, const cJSON *scene, uint32_t node,
 	gltf_mark_animated(walk->gltf, walk->moves);
 	cJSON_ArrayForEach(item, roots)
 	{
-		const cJSON *root = child_of(walk, item, &number);
+		const cJSON *root = gltf_child(walk->gltf, item, &number);
 
 		if (rc == 0 && !root)
 			rc = gltf_say(walk->gltf, -EBADMSG, scene,
@@ -518,7 +373,7 @@ static int add_scene(struct walk *walk, const cJSON *scene, uint32_t node,
 	}
 	cJSON_ArrayForEach(item, roots)
 	{
-		const cJSON *root = rc == 0 ? child_of(walk, item, &number) : NULL;
+		const cJSON *root = rc == 0 ? gltf_child(walk->gltf, item, &number) : NULL;
 
 		if (root)
 			rc = visit(walk, root, number, node, vrml_identity, false);
@@ -545,17 +400,18 @@ int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint3
 {
 	const uint32_t count = gltf->lists[GLTF_NODES].count;
 	struct walk walk = { .maker = maker, .gltf = gltf, .warnings = warnings, .root = node };
-	const cJSON *scene = find_scene(&walk, choice->scene);
+	const cJSON *scene = gltf_scene(gltf, choice->scene);
 	int rc = scene ? 0 : -EINVAL;
 
 	if (rc < 0)
 		return rc;
 	walk.moves = calloc((size_t)count + 1, sizeof(*walk.moves));
 	walk.was_seen = calloc((size_t)count + 1, sizeof(*walk.was_seen));
+	walk.has_mesh = calloc((size_t)count + 1, sizeof(*walk.has_mesh));
 	walk.nodes = malloc(((size_t)count + 1) * sizeof(*walk.nodes));
 	for (uint32_t i = 0; walk.nodes && i < count; i++)
 		walk.nodes[i] = SCENERY_NONE;
-	if (!walk.moves || !walk.was_seen || !walk.nodes)
+	if (!walk.moves || !walk.was_seen || !walk.has_mesh || !walk.nodes)
 		rc = fail(&walk, -ENOMEM, NULL);
 	if (rc == 0)
 		rc = add_scene(&walk, scene, node, choice);
@@ -564,6 +420,7 @@ int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint3
 	picture_finish(&walk.picture);
 	free(walk.moves);
 	free(walk.was_seen);
+	free(walk.has_mesh);
 	free(walk.nodes);
 	return rc;
 }

@@ -15,7 +15,7 @@
 #include "pipeline/scene/vrml_motions.h"
 
 /* The keys of both interpolators, and the two ends. */
-enum { WAY_VIEWS_MAX = 2 * VRML_VIEW_KEYS_MAX + 2 };
+enum { WAY_VIEWS_MAX = 2 * SCENE_KEYS_MAX + 2 };
 
 /* A Viewpoint, where the Transforms above it put it, and what moves it; NULL: nothing does. */
 struct camera {
@@ -55,11 +55,11 @@ static int add_camera(struct search *search, const struct vrml_node *node, const
 {
 	struct camera *camera;
 	int rc = ARRAY_RESERVE(search->cameras, search->room, (uint64_t)search->count + 1,
-			       VRML_VIEWPOINTS_MAX);
+			       SCENE_CAMERAS_MAX);
 
 	if (rc < 0)
 		return diagnostics_add(search->diagnostics, rc, node->file, node->line,
-				       "over %d Viewpoints; leave some out", VRML_VIEWPOINTS_MAX);
+				       "over %d Viewpoints; leave some out", SCENE_CAMERAS_MAX);
 	camera = &search->cameras[search->count++];
 	*camera = (struct camera){ .node = node, .is_carried = is_carried };
 	memcpy(camera->place, place, sizeof(camera->place));
@@ -155,25 +155,6 @@ static int choose(const struct search *search, const char *description, const st
 
 /* ---- one view */
 
-static void place_view(struct vrml_view *view, const float place[16], const float position[3],
-		       const float turn[4])
-{
-	const float *q = turn;
-	/* Where -z, the way that a Viewpoint looks, goes by the turn. */
-	const float ahead[3] = { -2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
-				 -(1 - 2 * (q[0] * q[0] + q[1] * q[1])) };
-
-	for (int row = 0; row < 3; row++) {
-		view->eye[row] = place[12 + row];
-		view->target[row] = 0;
-		for (int k = 0; k < 3; k++) {
-			view->eye[row] += place[4 * k + row] * position[k];
-			view->target[row] += place[4 * k + row] * ahead[k];
-		}
-		view->target[row] += view->eye[row];
-	}
-}
-
 static void own_position(float out[3], const struct vrml_node *node)
 {
 	vrml_get_floats(out, node, "position", 3, (const float[3]){ 0, 0, 10 });
@@ -187,27 +168,16 @@ static void own_turn(float out[4], const struct vrml_node *node)
 	scenery_turn(out, rotation, rotation[3]);
 }
 
-static int add_view(struct vrml_views *out, const struct vrml_view *view)
-{
-	int rc = ARRAY_RESERVE(out->items, out->room, (uint64_t)out->count + 1, WAY_VIEWS_MAX);
-
-	if (rc == 0)
-		out->items[out->count++] = *view;
-	return rc;
-}
-
-static int add_still(struct vrml_views *out, const struct search *search)
+static int add_still(struct scene_views *out, const struct search *search)
 {
 	int rc = 0;
 
 	for (uint32_t i = 0; i < search->count && rc == 0; i++) {
-		struct vrml_view view = { 0 };
 		float position[3], turn[4];
 
 		own_position(position, search->cameras[i].node);
 		own_turn(turn, search->cameras[i].node);
-		place_view(&view, search->cameras[i].place, position, turn);
-		rc = add_view(out, &view);
+		rc = scene_views_add(out, 0, search->cameras[i].place, position, turn);
 	}
 	return rc;
 }
@@ -218,29 +188,28 @@ struct keys {
 	const struct vrml_value *times, *values; /* NULL: it stays */
 };
 
-/* A moment of a way. Where two keys have one time the value jumps there, and the moment just before
- * is another one. */
-struct moment {
-	float time; /* share of the way, 0 to 1 */
-	bool is_before;
-};
-
 /* Returns the key before a moment, and how far between it and the next the moment is. */
-static uint32_t find_key(const struct vrml_value *times, struct moment moment, float *share)
+static uint32_t find_key(const struct vrml_value *times, struct scene_moment moment, float *share)
 {
 	const float time = moment.time;
-	uint32_t at = 0;
+	uint32_t at = 0, end = times->count; /* the first key after the moment is one of these */
 
-	while (at + 1 < times->count &&
-	       (moment.is_before ? times->floats[at + 1] < time : times->floats[at + 1] <= time))
-		at++;
+	while (at < end) {
+		const uint32_t middle = (at + end) / 2;
+
+		if (scene_moment_reaches(moment, times->floats[middle]))
+			at = middle + 1;
+		else
+			end = middle;
+	}
+	at -= at > 0;
 	*share = 0;
 	if (at + 1 < times->count && time > times->floats[at])
 		*share = (time - times->floats[at]) / (times->floats[at + 1] - times->floats[at]);
 	return at;
 }
 
-static void position_at(float out[3], const struct keys *keys, struct moment moment)
+static void position_at(float out[3], const struct keys *keys, struct scene_moment moment)
 {
 	float share;
 	const uint32_t at = find_key(keys->times, moment, &share);
@@ -251,53 +220,34 @@ static void position_at(float out[3], const struct keys *keys, struct moment mom
 }
 
 /* The shorter way round, at an even speed. */
-static void turn_at(float out[4], const struct keys *keys, struct moment moment)
+static void turn_at(float out[4], const struct keys *keys, struct scene_moment moment)
 {
-	float share, a[4], b[4], dot = 0, angle, weights[2];
+	float share, a[4], b[4];
 	const uint32_t at = find_key(keys->times, moment, &share);
 	const float *from = &keys->values->floats[4 * at], *to = share > 0 ? from + 4 : from;
 
 	scenery_turn(a, from, from[3]);
 	scenery_turn(b, to, to[3]);
-	for (int k = 0; k < 4; k++)
-		dot += a[k] * b[k];
-	angle = acosf(fminf(fabsf(dot), 1));
-	weights[0] = angle > 1e-3f ? sinf((1 - share) * angle) / sinf(angle) : 1 - share;
-	weights[1] = angle > 1e-3f ? sinf(share * angle) / sinf(angle) : share;
-	for (int k = 0; k < 4; k++)
-		out[k] = weights[0] * a[k] + (dot < 0 ? -1 : 1) * weights[1] * b[k];
-}
-
-static int by_time(const void *a, const void *b)
-{
-	const struct moment *x = a, *y = b;
-
-	if (x->time != y->time)
-		return x->time > y->time ? 1 : -1;
-	return y->is_before - x->is_before;
+	scene_turn_between(out, a, b, share);
 }
 
 /* Writes the moments of all keys, each once, and both ends; returns how many. */
-static uint32_t gather_moments(struct moment out[WAY_VIEWS_MAX], const struct keys *position,
+static uint32_t gather_moments(struct scene_moment out[WAY_VIEWS_MAX], const struct keys *position,
 			       const struct keys *turn)
 {
 	const struct vrml_value *lists[] = { position->times, turn->times };
-	uint32_t count = 0, kept = 0;
+	uint32_t count = 0;
 
-	out[count++] = (struct moment){ .time = 0 };
-	out[count++] = (struct moment){ .time = 1 };
+	out[count++] = (struct scene_moment){ .time = 0 };
+	out[count++] = (struct scene_moment){ .time = 1 };
 	for (size_t l = 0; l < ARRAY_COUNT(lists); l++)
 		for (uint32_t i = 0; lists[l] && i < lists[l]->count; i++) {
 			const float *key = &lists[l]->floats[i];
 			const bool jumps = i + 1 < lists[l]->count && key[1] == key[0];
 
-			out[count++] = (struct moment){ .time = *key, .is_before = jumps };
+			out[count++] = (struct scene_moment){ .time = *key, .is_before = jumps };
 		}
-	qsort(out, count, sizeof(*out), by_time);
-	for (uint32_t i = 0; i < count; i++)
-		if (kept == 0 || by_time(&out[i], &out[kept - 1]) > 0)
-			out[kept++] = out[i];
-	return kept;
+	return scene_moments_sort(out, count);
 }
 
 /* Finds the TimeSensor of an interpolator; NULL: none drives it. */
@@ -327,10 +277,10 @@ static int get_keys(const struct search *search, const struct vrml_node *interpo
 	if (!interpolator)
 		return 0;
 	rc = vrml_keys(interpolator, width, &out->times, &out->values, search->diagnostics);
-	if (rc == 0 && out->times->count > VRML_VIEW_KEYS_MAX)
+	if (rc == 0 && out->times->count > SCENE_KEYS_MAX)
 		rc = diagnostics_add(search->diagnostics, -EFBIG, interpolator->file,
 				     interpolator->line, "over %d keys; leave some out",
-				     VRML_VIEW_KEYS_MAX);
+				     SCENE_KEYS_MAX);
 	return rc;
 }
 
@@ -360,9 +310,10 @@ static int get_duration(const struct search *search, const struct camera *camera
 	return 0;
 }
 
-static int add_way(struct vrml_views *out, const struct search *search, const struct camera *camera)
+static int add_way(struct scene_views *out, const struct search *search,
+		   const struct camera *camera)
 {
-	struct moment moments[WAY_VIEWS_MAX];
+	struct scene_moment *moments;
 	float seconds = 0;
 	struct keys position, turn;
 	uint32_t count;
@@ -377,12 +328,12 @@ static int add_way(struct vrml_views *out, const struct search *search, const st
 		rc = get_keys(search, camera->orientation, 4, &turn);
 	if (rc == 0)
 		rc = get_duration(search, camera, &seconds);
-	if (rc < 0)
-		return rc;
+	moments = rc == 0 ? malloc(WAY_VIEWS_MAX * sizeof(*moments)) : NULL;
+	if (!moments)
+		return rc < 0 ? rc : -ENOMEM;
 	out->moves = true;
 	count = gather_moments(moments, &position, &turn);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
-		struct vrml_view view = { .time_s = moments[i].time * seconds };
 		float at[3], quaternion[4];
 
 		own_position(at, camera->node);
@@ -391,20 +342,20 @@ static int add_way(struct vrml_views *out, const struct search *search, const st
 			position_at(at, &position, moments[i]);
 		if (turn.times)
 			turn_at(quaternion, &turn, moments[i]);
-		place_view(&view, camera->place, at, quaternion);
-		rc = add_view(out, &view);
+		rc = scene_views_add(out, moments[i].time * seconds, camera->place, at, quaternion);
 	}
+	free(moments);
 	return rc;
 }
 
-int vrml_views_read(struct vrml_views *out, const struct vrml *scene, const char *description,
+int vrml_views_read(struct scene_views *out, const struct vrml *scene, const char *description,
 		    struct diagnostics *diagnostics)
 {
 	struct search search = { .scene = scene, .diagnostics = diagnostics };
 	const struct camera *camera = NULL;
 	int rc = find_cameras(&search);
 
-	*out = (struct vrml_views){ 0 };
+	*out = (struct scene_views){ 0 };
 	if (rc == 0)
 		rc = choose(&search, description, &camera);
 	if (rc == 0)
@@ -415,12 +366,4 @@ int vrml_views_read(struct vrml_views *out, const struct vrml *scene, const char
 	free(search.cameras);
 	map_finish(&search.carriers);
 	return rc;
-}
-
-void vrml_views_finish(struct vrml_views *views)
-{
-	if (!views)
-		return;
-	free(views->items);
-	*views = (struct vrml_views){ 0 };
 }

@@ -47,7 +47,7 @@ static int make_scenery(const struct vrml *scene, const struct vrml_options *opt
 
 static void read_views(const struct vrml *scene, struct diagnostics *diagnostics)
 {
-	struct vrml_views views;
+	struct scene_views views;
 	int rc = vrml_views_read(&views, scene, NULL, diagnostics);
 
 	if (rc < 0 && diagnostics->error_count == 0)
@@ -55,7 +55,7 @@ static void read_views(const struct vrml *scene, struct diagnostics *diagnostics
 	for (uint32_t i = 1; i < views.count; i++)
 		if (views.items[i].time_s < views.items[i - 1].time_s)
 			abort();
-	vrml_views_finish(&views);
+	scene_views_finish(&views);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -239,6 +239,55 @@ static void a_tour_keeps_the_times_of_a_scenes_keys(void **state)
 	info_built_finish(&built);
 }
 
+/* A film of 300 keys along a circle: fewer are flown, and the way is kept. */
+static void a_film_has_as_many_keys_as_it_needs(void **state)
+{
+	enum { KEYS = 300 };
+	static struct tour_path path;
+	static char text[32768];
+	struct info_built built;
+	struct info *info;
+	bool says_so = false;
+	size_t at = 0;
+
+	(void)state;
+	write_scenes();
+	at += (size_t)snprintf(text, sizeof(text),
+			       "#VRML V2.0 utf8\nDEF V Viewpoint {}\nDEF C TimeSensor "
+			       "{ cycleInterval 20 }\nDEF P PositionInterpolator { key [");
+	for (int i = 0; i < KEYS; i++)
+		at += (size_t)snprintf(text + at, sizeof(text) - at, " %.6f",
+				       (double)i / (KEYS - 1));
+	at += (size_t)snprintf(text + at, sizeof(text) - at, " ]\nkeyValue [");
+	for (int i = 0; i < KEYS; i++)
+		at += (size_t)snprintf(text + at, sizeof(text) - at, " %.3f 0 %.3f,",
+				       1000 * cos(6.0 * i / (KEYS - 1)),
+				       1000 * sin(6.0 * i / (KEYS - 1)));
+	snprintf(text + at, sizeof(text) - at,
+		 " ] }\nROUTE C.fraction_changed TO P.set_fraction\n"
+		 "ROUTE P.value_changed TO V.position");
+	write_text("scenes/walk.wrl", text);
+	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/walk.wrl\""));
+	CHECK(build(&built) == 0);
+	for (uint32_t i = 0; i < told.count; i++)
+		says_so |= strstr(diagnostics_get(&told, i)->text,
+				  "tours.json:2: tour \"a\": of the 300 keys") != NULL;
+	CHECK(says_so);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	CHECK(info_tour(info, 0)->stop_count > 16 && info_tour(info, 0)->stop_count <= 64);
+	tour_way(&path, info_tour(info, 0), 30);
+	for (int64_t ms = 0; ms <= 20000; ms += 100) {
+		const float angle = 6 * (float)ms / 20000;
+		struct tour_pose pose;
+
+		tour_path_pose(&path, 2000 + ms, &pose);
+		CHECK(fabsf(pose.eye_m[0] - 10 * cosf(angle)) < 0.04f);
+		CHECK(fabsf(pose.eye_m[1] + 10 * sinf(angle)) < 0.04f);
+	}
+	info_close(info);
+	info_built_finish(&built);
+}
+
 static void faults_of_a_tour_through_a_scene_are_named(void **state)
 {
 	static const struct {
@@ -269,7 +318,7 @@ static void faults_of_a_tour_through_a_scene_are_named(void **state)
 	write_text("scenes/still.wrl", "#VRML V2.0 utf8\nViewpoint {}");
 	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/still.wrl\""));
 	CHECK(build(&built) == -EINVAL);
-	CHECK(was_told("tours.json", 2, "has 1 Viewpoints: a tour needs 2"));
+	CHECK(was_told("tours.json", 2, "has 1 Viewpoints or cameras: a tour needs 2"));
 	write_text("tours.json", SCENE_TOUR("\"scene\": \"scenes/still.wrl\", "
 					    "\"viewpoint\": \"x\""));
 	CHECK(build(&built) == -EINVAL);
@@ -398,6 +447,7 @@ int main(void)
 		IN_A_FOLDER(links_lead_to_tours_that_are_there),
 		IN_A_FOLDER(a_scene_gives_the_stops_of_a_tour),
 		IN_A_FOLDER(a_tour_keeps_the_times_of_a_scenes_keys),
+		IN_A_FOLDER(a_film_has_as_many_keys_as_it_needs),
 		IN_A_FOLDER(faults_of_a_tour_through_a_scene_are_named),
 		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
 		IN_A_FOLDER(a_damaged_image_breaks_nothing),

@@ -21,7 +21,7 @@
 	     "ROUTE P.value_changed TO V.set_position\n"                                           \
 	     "ROUTE O.value_changed TO V.orientation\n"
 
-static int read_views(struct vrml_views *out, const char *text, const char *description,
+static int read_views(struct scene_views *out, const char *text, const char *description,
 		      struct diagnostics *diagnostics)
 {
 	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
@@ -49,7 +49,7 @@ static void viewpoints_that_stand_still_come_in_order(void **state)
 		     "Transform { translation 0 0 5 rotation 0 1 0 1.5708 children\n"
 		     "  Viewpoint { position 1 0 0 orientation 1 0 0 -1.5708 } }";
 	struct diagnostics diagnostics = { 0 };
-	struct vrml_views views;
+	struct scene_views views;
 
 	(void)state;
 	CHECK(read_views(&views, text, NULL, &diagnostics) == 0);
@@ -57,14 +57,14 @@ static void viewpoints_that_stand_still_come_in_order(void **state)
 	CHECK(is_at(views.items[0].eye, 0, 0, 10) && is_at(views.items[0].target, 0, 0, 9));
 	/* It looks down, and the Transform turns it and moves it. */
 	CHECK(is_at(views.items[1].eye, 0, 0, 4) && is_at(views.items[1].target, 0, -1, 4));
-	vrml_views_finish(&views);
+	scene_views_finish(&views);
 }
 
 static void a_moving_viewpoint_has_a_view_at_each_key(void **state)
 {
 	static const float times[] = { 0, 2, 5, 10 };
 	struct diagnostics diagnostics = { 0 };
-	struct vrml_views views;
+	struct scene_views views;
 
 	(void)state;
 	CHECK(read_views(&views, WALK "Viewpoint {}", NULL, &diagnostics) == 0);
@@ -75,7 +75,7 @@ static void a_moving_viewpoint_has_a_view_at_each_key(void **state)
 	/* Between two keys it is on the straight line, at an even speed. */
 	CHECK(is_at(views.items[2].eye, 3, 1, 0) && is_at(views.items[2].target, 3, 1, -1));
 	CHECK(is_at(views.items[3].eye, 8, 1, 0) && is_at(views.items[3].target, 7, 1, 0));
-	vrml_views_finish(&views);
+	scene_views_finish(&views);
 }
 
 /* Two keys at one time are a jump: a view just before it, one after. The timer begins before the
@@ -90,7 +90,7 @@ static void a_jump_has_a_view_on_either_side(void **state)
 	static const float expected[][3] = { { 0, 0, 0 }, { 1, 0, 0 }, { 5, 4, 0 },
 					     { 5, 4, 9 }, { 8, 8, 9 }, { 10, 8, 9 } };
 	struct diagnostics diagnostics = { 0 };
-	struct vrml_views views;
+	struct scene_views views;
 
 	(void)state;
 	CHECK(read_views(&views, text, NULL, &diagnostics) == 0);
@@ -99,7 +99,7 @@ static void a_jump_has_a_view_on_either_side(void **state)
 		CHECK(fabsf(views.items[i].time_s - expected[i][0]) < 1e-4f);
 		CHECK(is_at(views.items[i].eye, expected[i][1], expected[i][2], 0));
 	}
-	vrml_views_finish(&views);
+	scene_views_finish(&views);
 }
 
 static void of_several_the_description_says_which(void **state)
@@ -109,7 +109,7 @@ static void of_several_the_description_says_which(void **state)
 		"DEF Q PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 9 0 ] }\n"
 		"ROUTE C.fraction_changed TO Q.set_fraction ROUTE Q.value_changed TO W.position\n";
 	struct diagnostics diagnostics = { 0 };
-	struct vrml_views views;
+	struct scene_views views;
 
 	(void)state;
 	CHECK(read_views(&views, text, NULL, &diagnostics) == -EINVAL);
@@ -117,7 +117,7 @@ static void of_several_the_description_says_which(void **state)
 	diagnostics = (struct diagnostics){ 0 };
 	CHECK(read_views(&views, text, "still", &diagnostics) == 0);
 	CHECK(views.count == 2 && is_at(views.items[1].eye, 0, 9, 0));
-	vrml_views_finish(&views);
+	scene_views_finish(&views);
 	CHECK(read_views(&views, text, "none", &diagnostics) == -EINVAL);
 	CHECK(strstr(diagnostics.first.text, "no moving Viewpoint whose description is \"none\""));
 }
@@ -152,10 +152,10 @@ static void a_faulty_way_is_named_with_line_and_cure(void **state)
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
 		struct diagnostics diagnostics = { 0 };
-		struct vrml_views views;
+		struct scene_views views;
 
 		CHECK(read_views(&views, cases[i].text, NULL, &diagnostics) < 0);
-		vrml_views_finish(&views);
+		scene_views_finish(&views);
 		if (!strstr(diagnostics.first.text, cases[i].words))
 			fail_msg("case %zu: %s", i, diagnostics.first.text);
 	}
