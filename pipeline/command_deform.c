@@ -2,6 +2,7 @@
 #include "pipeline/commands.h"
 
 #include <getopt.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,17 +11,19 @@
 #include "base/parallel.h"
 #include "base/resource_usage.h"
 #include "pipeline/deform/deform.h"
+#include "pipeline/deform/mesh_obj.h"
 #include "pipeline/import/import.h"
 #include "pipeline/octree/mesh_ply.h"
 
 static const char help[] =
 	"gopura-content deform: bend a scan, such as a leaning pillar into a straight one\n"
 	"\n"
-	"usage: gopura-content deform --with FILE.json --out FILE.ply SCAN\n"
+	"usage: gopura-content deform --with FILE.json --out FILE.ply|FILE.obj SCAN\n"
 	"\n"
 	"  --with FILE.json  how: lattices around the scan, and how their points move; docs/deform.md\n"
 	"                    explains it\n"
-	"  --out FILE.ply    the file to write; it keeps the scan's unit, axes and colours\n"
+	"  --out FILE        the file to write; it keeps the scan's unit and axes. A .ply keeps its\n"
+	"                    colours, an .obj its textures, in files of that name beside it\n"
 	"  --jobs N          number of threads (default: one per core); the result does not depend\n"
 	"                    on it\n"
 	"\n"
@@ -61,16 +64,23 @@ static void print_report(const struct deform_report *report, int64_t began_ms)
 	       (double)(clock_now_ms() - began_ms) / 1000, (double)usage.own_bytes / 1e6);
 }
 
-/* A scan without colours gets none. */
+/* A scan without colours gets none, and one with textures loses them in a PLY. */
 static int write(struct mesh *mesh, const struct import_report *imported, const char *out)
 {
+	const char *end = strrchr(out, '.');
+	const bool is_obj = end && strcmp(end, ".obj") == 0;
 	uint8_t(*colours)[4] = mesh->colours;
 	int rc;
 
 	if (!imported->had_colours && imported->textures == 0)
 		mesh->colours = NULL;
-	rc = mesh_ply_write(mesh, out);
+	rc = is_obj ? mesh_obj_write(mesh, out) : mesh_ply_write(mesh, out);
 	mesh->colours = colours;
+	if (rc == 0 && !is_obj && imported->textures > 0)
+		fprintf(stderr,
+			"%s: a PLY has colours at its vertices instead of the %u textures of the scan; "
+			"give --out FILE.obj to keep these\n",
+			out, imported->textures);
 	if (rc < 0)
 		fprintf(stderr, "%s: %s; is the disk full, or the folder missing?\n", out,
 			strerror(-rc));
@@ -138,7 +148,8 @@ int command_deform(int argc, char **argv)
 		}
 	}
 	if (!settings.with || !settings.out)
-		return command_wrong(argv[0], "give --with FILE.json and --out FILE.ply", "");
+		return command_wrong(argv[0],
+				     "give --with FILE.json and --out FILE.ply or FILE.obj", "");
 	if (argc - optind != 1)
 		return command_wrong(argv[0], "name one scan", "");
 	settings.scan = argv[optind];

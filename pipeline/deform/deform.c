@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/spill.h"
 #include "pipeline/deform/bend_split.h"
+#include "pipeline/deform/fold_check.h"
 #include "pipeline/deform/lattice_step.h"
 #include "pipeline/deform/surface_warp.h"
 
@@ -17,8 +18,6 @@ enum { RANGE_VERTICES = 1 << 14, LINE_PLACES = 257 };
 /* More triangles than this are no result but a tolerance that is too small. */
 enum { GROWTH_MAX = 8, TRIANGLES_LEAST = 4000000 };
 
-/* Space that shrinks to less is folded; derivatives of surfaces are no more exact. */
-#define GROWTH_LEAST 1e-6
 /* A tolerance that no eye sees, for those who do not say one. */
 #define TOLERANCE_OF_DIAGONAL 1e-4
 
@@ -86,23 +85,12 @@ struct mover {
 	struct growth *ranges; /* of each range of vertices; owned */
 };
 
-/* The determinant of the derivatives: how much space grows there; below 0, it is turned inside out.
- */
-static double determinant(double j[3][3])
-{
-	return j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) -
-	       j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
-	       j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]);
-}
-
 static double growth_at(const struct mover *m, uint32_t v, double to[3])
 {
 	const float *position = m->mesh->positions[v];
 	const double from[3] = { (double)position[0], (double)position[1], (double)position[2] };
-	double jacobian[3][3];
 
-	m->warp->place(m->warp->data, from, to, jacobian);
-	return determinant(jacobian);
+	return fold_growth(m->warp, from, to);
 }
 
 static int check_range(void *user, uint32_t first, uint32_t after, uint32_t worker)
@@ -169,10 +157,8 @@ static int refuse_lattice(const struct deforming *d, const struct ready_step *re
 }
 
 static int refuse_fold(const struct deforming *d, const struct ready_step *ready,
-		       const struct growth *growth)
+		       const double place[3])
 {
-	const float *at = d->mesh->positions[growth->least_at];
-	const double place[3] = { (double)at[0], (double)at[1], (double)at[2] };
 	uint32_t point[2] = { 0, 0 };
 
 	if (!ready->surface)
@@ -185,7 +171,21 @@ static int refuse_fold(const struct deforming *d, const struct ready_step *ready
 		place[0], place[1], place[2], point[0], point[1]);
 }
 
-/* Checks all vertices, and moves them if none folds. */
+/* Refuses a step that folds a vertex, the worst of which is given, or a triangle between its
+ * vertices. */
+static int check_folds(const struct deforming *d, const struct ready_step *ready,
+		       const struct growth *growth)
+{
+	const float *at = d->mesh->positions[growth->least_at];
+	double place[3] = { (double)at[0], (double)at[1], (double)at[2] };
+	int rc = 1;
+
+	if (growth->least > FOLD_GROWTH_LEAST)
+		rc = fold_find(place, d->mesh, &ready->warp, d->jobs);
+	return rc == 1 ? refuse_fold(d, ready, place) : rc;
+}
+
+/* Checks all vertices and triangles, and moves them if none folds. */
 static int move_vertices(struct deforming *d, const struct ready_step *ready)
 {
 	const uint32_t count = d->mesh->vertex_count;
@@ -203,8 +203,8 @@ static int move_vertices(struct deforming *d, const struct ready_step *ready)
 		growth.most = fmax(growth.most, m.ranges[i].most);
 	}
 	free(m.ranges);
-	if (rc == 0 && !(growth.least > GROWTH_LEAST))
-		rc = refuse_fold(d, ready, &growth);
+	if (rc == 0)
+		rc = check_folds(d, ready, &growth);
 	if (rc == 0) {
 		d->report->least_growth = fmin(d->report->least_growth, growth.least);
 		d->report->most_growth = fmax(d->report->most_growth, growth.most);

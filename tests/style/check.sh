@@ -71,7 +71,7 @@ is_public() {
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;
-	pipeline/deform/*) names="deform deform_plan" ;;
+	pipeline/deform/*) names="deform deform_plan mesh_obj" ;;
 	pipeline/keys/*) names="keys keys_place keys_tuf signing" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;

@@ -4,9 +4,12 @@
 #include <errno.h>
 #include <math.h>
 
+#include "format/picture.h"
 #include "pipeline/deform/bend_split.h"
 #include "pipeline/deform/lattice_step.h"
+#include "pipeline/deform/mesh_obj.h"
 #include "pipeline/deform/surface_warp.h"
+#include "pipeline/import/import.h"
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 #include "tests/pipeline/shapes.h"
@@ -475,6 +478,92 @@ static void refuses_to_fold_over_and_names_the_point(void **state)
 	mesh_finish(&mesh);
 }
 
+/* A square of two triangles, whose corners stay: its middle is pushed over its side. The tolerance
+ * lets it be as it is, so no vertex is where it folds. */
+static void refuses_a_fold_between_vertices(void **state)
+{
+	static const char *const pushes[] = { "-8", "-0.5" };
+	char message[DIAGNOSTIC_BYTES], json[300];
+	(void)state;
+
+	for (int i = 0; i < 2; i++) {
+		struct deform_report report;
+		struct mesh mesh;
+		int rc;
+
+		shape_room(&mesh, 4, 2);
+		for (int corner = 0; corner < 4; corner++)
+			shape_vertex(&mesh, corner % 2 ? 4 : 0, corner / 2 ? 4 : 0, 0);
+		shape_triangle(&mesh, 0, 1, 3);
+		shape_triangle(&mesh, 0, 3, 2);
+		snprintf(json, sizeof(json),
+			 "{\"tolerance\": 1000, \"steps\": [{\"lattice\": [4, 4, 1],\n"
+			 "\"box\": {\"low\": [0, 0, -1], \"high\": [4, 4, 1]}, \"moves\": [\n"
+			 "{\"points\": [2, 2, \"all\"], \"by\": [%s, 0, 0]}]}]}",
+			 pushes[i]);
+		rc = run(&mesh, json, &report, message);
+		print_message("%s\n", message);
+		CHECK(mesh.vertex_count == 4 && rc == (i == 0 ? -EDOM : 0));
+		CHECK(i == 1 || strstr(message, "bend.json:3: the scan would fold over at "));
+		mesh_finish(&mesh);
+	}
+}
+
+/* A textured square with a plain one beside it comes back from its files as it was bent. */
+static void textures_go_along(void **state)
+{
+	static const char obj[] = "mtllib skin.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n"
+				  "v 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl skin\n"
+				  "f 1/1 2/2 3/3 4/4\nusemtl plain\nf 2/2 5/2 6/3 3/3\n";
+	static const char mtl[] = "newmtl skin\nKd 1 1 1\nmap_Kd skin.png\n"
+				  "newmtl plain\nKd 0.2 0.4 0.6\n";
+	static uint8_t pixels[] = { 255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 255 };
+	const struct picture picture = { 2, 2, pixels };
+	const struct import_options options = { .jobs = 1 };
+	struct diagnostics diagnostics = { 0 };
+	struct import_report imported;
+	char path[256], out[300], beside[300];
+	struct deform_report report;
+	struct mesh mesh, back;
+	struct buffer png;
+	(void)state;
+
+	buffer_init(&png, 1 << 16);
+	CHECK(picture_encode_png(&png, &picture) == 0);
+	scan_write(path, "square.obj", obj, strlen(obj));
+	scan_write_beside(path, "skin.mtl", mtl, strlen(mtl));
+	scan_write_beside(path, "skin.png", png.data, png.size);
+	CHECK(import_scan(&mesh, path, &options, &imported, &diagnostics) == 0);
+	CHECK(imported.textures == 1 && mesh.uvs && mesh.materials);
+	report = deformed(&mesh, "{\"tolerance\": 0.01, \"steps\": [{\"lattice\": [2, 1, 1],\n"
+				 "\"box\": {\"low\": [0, 0, -1], \"high\": [2, 1, 1]}, "
+				 "\"moves\": [{\"points\": [1, \"all\", \"all\"], "
+				 "\"by\": [0, 0, 0.6]}]}]}");
+	CHECK(report.after.triangles > 4);
+	snprintf(out, sizeof(out), "%.*s/bent.obj", (int)(strrchr(path, '/') - path), path);
+	CHECK(mesh_obj_write(&mesh, out) == 0);
+	CHECK(import_scan(&back, out, &options, &imported, &diagnostics) == 0);
+	CHECK(back.triangle_count == mesh.triangle_count && imported.textures == 1);
+	for (uint32_t t = 0; t < mesh.triangle_count; t++)
+		for (int k = 0; k < 3; k++) {
+			const uint32_t a = mesh.triangles[t][k], b = back.triangles[t][k];
+			uint8_t was[3], is[3];
+
+			CHECK(memcmp(mesh.positions[a], back.positions[b], 12) == 0);
+			mesh_texel(&mesh.textures[mesh.materials[t]], mesh.uvs[a], was);
+			mesh_texel(&back.textures[back.materials[t]], back.uvs[b], is);
+			CHECK(memcmp(was, is, 3) == 0);
+		}
+	CHECK(mesh_obj_write(&mesh, "bent.stl") == -EINVAL);
+	snprintf(beside, sizeof(beside), "%.*s/gone/bent.obj", (int)(strrchr(path, '/') - path),
+		 path);
+	CHECK(mesh_obj_write(&mesh, beside) < 0);
+	mesh_finish(&mesh);
+	mesh_finish(&back);
+	buffer_finish(&png);
+	scan_remove(path);
+}
+
 static void refuses_what_makes_no_sense(void **state)
 {
 #define STEP(inner)  "{\"steps\": [{" inner "}]}"
@@ -555,6 +644,8 @@ int main(void)
 		cmocka_unit_test(refuses_a_surface_that_ends_too_early),
 		cmocka_unit_test(stretches_a_dome_as_little_as_it_can),
 		cmocka_unit_test(refuses_to_fold_over_and_names_the_point),
+		cmocka_unit_test(refuses_a_fold_between_vertices),
+		cmocka_unit_test(textures_go_along),
 		cmocka_unit_test(refuses_what_makes_no_sense),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
