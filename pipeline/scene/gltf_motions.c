@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "pipeline/scene/gltf_morph.h"
 #include "pipeline/scene/gltf_nodes.h"
 #include "pipeline/scene/gltf_sampler.h"
 
@@ -21,6 +22,7 @@ static const struct path {
 	{ "translation", SCENERY_MOVE },
 	{ "rotation", SCENERY_TURN },
 	{ "scale", SCENERY_SCALE },
+	{ "weights", SCENERY_SHAPE },
 };
 
 static const char *text_of(const cJSON *object, const char *field)
@@ -62,7 +64,7 @@ static int add_track(struct scenery_maker *maker, const struct gltf *gltf,
 		     float duration_s, const cJSON *animation)
 {
 	const uint32_t count = gltf_sampler_key_count(sampler);
-	float *times = malloc(count * sizeof(*times)), *values, ignored[4];
+	float *times = malloc(count * sizeof(*times)), *values, ignored[GLTF_WEIGHTS_MAX];
 	int rc = times ? 0 : -ENOMEM;
 
 	for (uint32_t i = 0; rc == 0 && i < count; i++)
@@ -70,8 +72,12 @@ static int add_track(struct scenery_maker *maker, const struct gltf *gltf,
 	if (rc == 0)
 		rc = scenery_add_track(maker, node, target, times, count, &values);
 	for (uint32_t i = 0; rc == 0 && i < count; i++) {
-		float *value = &values[i * sampler->width];
+		float *value = &values[i * scenery_width(target)];
 
+		if (target == SCENERY_SHAPE) { /* gltf_morph.c made one for each key */
+			*value = (float)i;
+			continue;
+		}
 		gltf_sampler_key(value, sampler, i);
 		for (uint32_t k = 0; k < sampler->width; k++)
 			if (!isfinite(value[k]))
@@ -93,6 +99,22 @@ struct channel {
 	enum scenery_target target;
 };
 
+/* Reads the sampler of a channel. -ENOENT: it moves nothing: there are no morph targets, or another
+ * animation has given the mesh its shapes. */
+static int read_channel(struct gltf_sampler *out, const struct gltf *gltf, const cJSON *animation,
+			const cJSON *channel, enum scenery_target target, uint32_t node)
+{
+	const cJSON *of = gltf->lists[GLTF_NODES].items[node], *first;
+	const uint32_t weights = gltf_morph_count(gltf, of);
+
+	if (target != SCENERY_SHAPE)
+		return gltf_sampler_read(out, gltf, animation, channel, scenery_width(target));
+	if (weights < 1 || weights > GLTF_WEIGHTS_MAX ||
+	    gltf_morph_channel(gltf, node, &first) != channel)
+		return -ENOENT;
+	return gltf_sampler_read_weights(out, gltf, animation, channel, weights);
+}
+
 /* Finds the channels of an animation that move something of the scene. */
 static int find_channels(struct channel *out, uint32_t *count, const struct gltf *gltf,
 			 const cJSON *animation, const uint32_t *nodes)
@@ -103,23 +125,19 @@ static int find_channels(struct channel *out, uint32_t *count, const struct gltf
 	cJSON_ArrayForEach(channel, channels)
 	{
 		const cJSON *target = cJSON_GetObjectItemCaseSensitive(channel, "target");
-		const char *name = text_of(target, "path");
 		const struct path *path = path_of(target);
 		uint32_t node;
 		int rc;
 
-		if (name && strcmp(name, "weights") == 0)
-			return gltf_say(gltf, -ENOTSUP, channel,
-					"animation \"%.60s\" moves morph targets, which scenery "
-					"does not have; export it without, or move nodes instead",
-					gltf_name(animation));
 		if (!path || !gltf_item(gltf, GLTF_NODES, target, "node", &node) ||
 		    nodes[node] == SCENERY_NONE)
 			continue;
 		if (*count == CHANNELS_MAX)
 			return -EFBIG;
-		rc = gltf_sampler_read(&out[*count].sampler, gltf, animation, channel,
-				       scenery_width(path->target));
+		rc = read_channel(&out[*count].sampler, gltf, animation, channel, path->target,
+				  node);
+		if (rc == -ENOENT)
+			continue;
 		if (rc < 0)
 			return rc;
 		out[*count].node = nodes[node];

@@ -4,7 +4,10 @@
 
 #include "pipeline/scene/gltf.h"
 
-enum { GLTF_PIECES = 8 }; /* straight ones into which a segment of a cubic spline is divided */
+enum {
+	GLTF_PIECES = 8,       /* straight ones into which a segment of a cubic spline is divided */
+	GLTF_WEIGHTS_MAX = 64, /* of a mesh: numbers that a key has at most */
+};
 
 enum gltf_shape { GLTF_LINEAR, GLTF_STEP, GLTF_CUBIC };
 
@@ -13,6 +16,7 @@ struct gltf_sampler {
 	struct gltf_numbers times, values;
 	enum gltf_shape shape;
 	uint32_t width; /* numbers of a value */
+	bool is_flat;   /* each number is an element of values: those of weights are */
 };
 
 /* Gets the sampler of an animation's channel whose values have `width` numbers. The times ascend
@@ -20,6 +24,10 @@ struct gltf_sampler {
 must_check int gltf_sampler_read(struct gltf_sampler *out, const struct gltf *gltf,
 				 const struct cJSON *animation, const struct cJSON *channel,
 				 uint32_t width);
+/* The same for `width` weights of morph targets, 1 to GLTF_WEIGHTS_MAX. */
+must_check int gltf_sampler_read_weights(struct gltf_sampler *out, const struct gltf *gltf,
+					 const struct cJSON *animation, const struct cJSON *channel,
+					 uint32_t width);
 /* Returns the seconds of the last key. */
 float gltf_sampler_end_s(const struct gltf_sampler *sampler);
 

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "geometry/vec.h"
+#include "pipeline/scene/gltf_morph.h"
 #include "pipeline/scene/gltf_motions.h"
 #include "pipeline/scene/gltf_nodes.h"
 #include "pipeline/scene/scenery_look.h"
@@ -131,6 +132,9 @@ struct shape {
 	struct gltf_numbers positions, colours, indices, uvs;
 	bool has_uvs, has_colours, has_indices, has_normals;
 	struct look look;
+	struct gltf_morph morph;
+	const cJSON *bender;         /* the channel that animates its weights; NULL: none */
+	struct gltf_sampler sampler; /* of the bender */
 	int mode;
 	uint32_t count; /* of corners in order */
 };
@@ -144,10 +148,6 @@ static int read_shape(struct walk *walk, struct shape *out, const cJSON *primiti
 	int rc;
 
 	*out = (struct shape){ .mode = mode ? mode->valueint : TRIANGLES };
-	if (cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(primitive, "targets")) > 0)
-		return gltf_say(gltf, -ENOTSUP, primitive,
-				"a mesh has morph targets, which scenery does not have; export it "
-				"without shape keys");
 	rc = gltf_numbers_of(&out->positions, gltf, attributes, "POSITION", 3);
 	if (rc < 0)
 		return rc;
@@ -174,9 +174,32 @@ static int read_shape(struct walk *walk, struct shape *out, const cJSON *primiti
 	return rc;
 }
 
+/* Where the mesh of a node of the file goes. */
+struct place_of {
+	const cJSON *of;
+	uint32_t number;    /* of it in the file */
+	uint32_t node;      /* of the scenery */
+	const float *place; /* in that; column-major */
+	bool is_mirrored;
+};
+
+static void say_left_out(const struct walk *walk, const cJSON *primitive, const cJSON *mesh)
+{
+	diagnostics_add(walk->warnings, 0, walk->gltf->path,
+			json_text_line(&walk->gltf->json, primitive),
+			"mesh \"%.60s\" bends, so it has no picture here; that was left out",
+			gltf_name(mesh));
+}
+
+static uint32_t vertex_at(const struct shape *shape, uint32_t at)
+{
+	return shape->has_indices ? gltf_index(&shape->indices, at) : at;
+}
+
 static bool set_corner(struct soup_corner *out, const struct shape *shape, uint32_t at)
 {
-	const uint32_t vertex = shape->has_indices ? gltf_index(&shape->indices, at) : at;
+	const uint32_t vertex = vertex_at(shape, at);
+	float morphed[3];
 
 	*out = (struct soup_corner){ 0 };
 	if (vertex >= shape->positions.count ||
@@ -187,11 +210,14 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 		out->uv[0] = gltf_number(&shape->uvs, vertex, 0);
 		out->uv[1] = 1 - gltf_number(&shape->uvs, vertex, 1);
 	}
+	for (uint32_t k = 0; k < 3; k++)
+		morphed[k] = gltf_number(&shape->positions, vertex, k);
+	gltf_morph_place(morphed, &shape->morph, shape->morph.weights, vertex);
 	for (int k = 0; k < 3; k++) {
 		const float colour =
 			shape->has_colours ? gltf_number(&shape->colours, vertex, (uint32_t)k) : 1;
 
-		out->position[k] = gltf_number(&shape->positions, vertex, (uint32_t)k);
+		out->position[k] = morphed[k];
 		out->rgb[k] = shape->look.has_mean ? shape->look.mean[k]
 						   : to_byte(colour * shape->look.factor[k]);
 		if (!isfinite(out->position[k]))
@@ -208,14 +234,20 @@ static int add_triangles(struct soup *soup, const struct shape *shape)
 
 	for (uint32_t i = 0; i + 3 <= shape->count && rc == 0; i += step) {
 		const bool is_odd = shape->mode == STRIP && i % 2;
+		const uint32_t at[3] = { shape->mode == FAN ? 0 : i, is_odd ? i + 2 : i + 1,
+					 is_odd ? i + 1 : i + 2 };
 		struct soup_corner corners[3];
+		uint32_t vertices[3];
 
-		if (!set_corner(&corners[0], shape, shape->mode == FAN ? 0 : i) ||
-		    !set_corner(&corners[is_odd ? 2 : 1], shape, i + 1) ||
-		    !set_corner(&corners[is_odd ? 1 : 2], shape, i + 2))
-			return -EBADMSG;
+		for (int k = 0; k < 3; k++) {
+			vertices[k] = vertex_at(shape, at[k]);
+			if (!set_corner(&corners[k], shape, at[k]))
+				return -EBADMSG;
+		}
+		soup->from = vertices;
 		rc = soup_add(soup, corners, 3);
 	}
+	soup->from = NULL;
 	return rc;
 }
 
@@ -231,42 +263,73 @@ static int get_picture(struct walk *walk, const struct shape *shape)
 	return gltf_picture(&walk->picture, walk->gltf, shape->look.texture, walk->warnings);
 }
 
+/* Reads the morph targets of a shape, and the animation of their weights. */
+static int read_morph(const struct walk *walk, struct shape *shape, const struct place_of *of,
+		      const cJSON *mesh, const cJSON *primitive)
+{
+	const struct gltf *gltf = walk->gltf;
+	const cJSON *animation = NULL;
+	int rc = gltf_morph_read(&shape->morph, gltf, of->of, mesh, primitive,
+				 shape->positions.count);
+
+	if (rc < 0 || shape->morph.count == 0)
+		return rc;
+	shape->bender = gltf_morph_channel(gltf, of->number, &animation);
+	if (shape->bender && shape->morph.count != gltf_morph_count(gltf, of->of))
+		return gltf_say(gltf, -EBADMSG, primitive,
+				"the primitives of mesh \"%.60s\" have different numbers of morph "
+				"targets; export it anew",
+				gltf_name(mesh));
+	return shape->bender ? gltf_sampler_read_weights(&shape->sampler, gltf, animation,
+							 shape->bender, shape->morph.count)
+			     : 0;
+}
+
 static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON *mesh,
-			 uint32_t node, const float place[16], bool is_mirrored)
+			 const struct place_of *of)
 {
 	const float round = 1;
-	struct soup soup = { .texture = SOUP_NO_TEXTURE, .is_inside_out = is_mirrored };
+	struct soup soup = { .texture = SOUP_NO_TEXTURE, .is_inside_out = of->is_mirrored };
 	struct shape shape;
 	int has_picture;
 	int rc = read_shape(walk, &shape, primitive);
 
+	if (rc == 0)
+		rc = read_morph(walk, &shape, of, mesh, primitive);
 	if (rc < 0)
 		return rc;
+	soup.keeps_sources = shape.bender != NULL;
 	if (shape.mode != TRIANGLES && shape.mode != STRIP && shape.mode != FAN) {
 		walk->has_other_shapes = true;
 		return 0;
 	}
 	if (shape.look.material.opacity < 1.0f / 255)
 		return 0; /* it is not seen */
-	memcpy(soup.place, place, sizeof(soup.place));
+	memcpy(soup.place, of->place, sizeof(soup.place));
 	has_picture = get_picture(walk, &shape);
 	rc = has_picture < 0 ? has_picture : add_triangles(&soup, &shape);
+	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
+	if (rc == 0 && shape.bender)
+		rc = gltf_morph_add(walk->maker, of->node, &shape.look.material, &soup,
+				    shape.has_normals ? round : 0, &shape.morph, &shape.positions,
+				    &shape.sampler);
 	if (rc == -EBADMSG)
 		gltf_say(walk->gltf, rc, primitive,
 			 "mesh \"%.60s\" has indices or places that are none; export it anew",
 			 gltf_name(mesh));
-	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
-	if (rc == 0)
-		rc = scenery_add_surface(walk->maker, node, &shape.look.material, soup.triangles,
-					 soup.count, shape.has_normals ? round : 0,
+	if (shape.bender && has_picture > 0)
+		say_left_out(walk, primitive, mesh);
+	if (rc == 0 && !shape.bender)
+		rc = scenery_add_surface(walk->maker, of->node, &shape.look.material,
+					 soup.triangles, soup.count, shape.has_normals ? round : 0,
 					 has_picture ? &walk->picture : NULL);
 	soup_finish(&soup);
 	return fail(walk, rc, mesh);
 }
 
-static int add_mesh(struct walk *walk, const cJSON *node, uint32_t number, const float place[16],
-		    bool is_mirrored)
+static int add_mesh(struct walk *walk, const struct place_of *of)
 {
+	const cJSON *node = of->of;
 	const cJSON *mesh = gltf_item(walk->gltf, GLTF_MESHES, node, "mesh", NULL);
 	const cJSON *primitives = cJSON_GetObjectItemCaseSensitive(mesh, "primitives"), *primitive;
 	int rc = 0;
@@ -277,7 +340,7 @@ static int add_mesh(struct walk *walk, const cJSON *node, uint32_t number, const
 				"export it as stiff parts on nodes that move",
 				gltf_name(node));
 	cJSON_ArrayForEach(primitive, primitives) if (rc == 0) rc =
-		add_primitive(walk, primitive, mesh, number, place, is_mirrored);
+		add_primitive(walk, primitive, mesh, of);
 	return rc;
 }
 
@@ -339,7 +402,7 @@ static int visit(struct walk *walk, const cJSON *of, uint32_t number, uint32_t n
 	}
 	if (rc < 0)
 		return fail(walk, rc, of);
-	rc = add_mesh(walk, of, node, place, is_mirrored);
+	rc = add_mesh(walk, &(struct place_of){ of, number, node, place, is_mirrored });
 	cJSON_ArrayForEach(item, children)
 	{
 		uint32_t child = 0;

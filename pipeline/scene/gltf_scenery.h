@@ -13,8 +13,8 @@ struct gltf_choice {
 };
 
 /* Adds the scene below a node. What is left out is a diagnostic in warnings. Returns a negative
- * errno with a diagnostic in those of gltf: -EINVAL: no scene has that name; -ENOTSUP: skins and
- * morph targets; -EBADMSG: not valid; -EFBIG: past a limit of format/scenery.h; -ENOMEM. The maker
+ * errno with a diagnostic in those of gltf: -EINVAL: no scene has that name; -ENOTSUP: skins;
+ * -EBADMSG: not valid; -EFBIG: past a limit of format/scenery.h; -ENOMEM. The maker
  * is then only good for scenery_maker_finish. */
 must_check int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint32_t node,
 				const struct gltf_choice *choice, struct diagnostics *warnings);

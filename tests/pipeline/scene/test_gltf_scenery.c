@@ -228,6 +228,57 @@ static void a_scene_is_chosen_by_its_name(void **state)
 	CHECK(strstr(diagnostics.first.text, "a.gltf: has no scene \"c\""));
 }
 
+/* A triangle whose second corner rises by 4 and third by 4 and 8 times a weight of 0, 1 and 2. */
+#define MORPH                                                                                      \
+	"\"meshes\": [{\"weights\": [0.5], \"primitives\": [{\"attributes\":"                      \
+	" {\"POSITION\": 0}, \"targets\": [{\"POSITION\": 2}]}]}],\n"
+
+static void weights_of_morph_targets_make_shapes(void **state)
+{
+	static const char bends[] = ACCESSORS MORPH "\"nodes\": [{}, {\"mesh\": 0}]," ANIMATION(
+		"weights", "\"input\": 1, \"output\": 1") "\"scenes\": [{\"nodes\": [1]}]";
+	static const char stands[] =
+		ACCESSORS MORPH "\"nodes\": [{\"mesh\": 0}],\"scenes\": [{\"nodes\": [0]}]";
+	static const char idle[] = ACCESSORS MESHES "\"nodes\": [{}, {\"mesh\": 0}]," ANIMATION(
+		"weights", "\"input\": 1, \"output\": 1") "\"scenes\": [{\"nodes\": [1]}]";
+	const struct gltf_choice choice = { 0 };
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	const struct scenery_mesh *mesh;
+	struct scenery s;
+
+	(void)state;
+	if (make(&s, bends, &choice, &diagnostics, &warnings) != 0)
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(warnings.count == 0 && s.mesh_count == 1 && s.track_count == 1);
+	mesh = s.meshes;
+	CHECK(mesh->shape_count == 3 && mesh->vertex_count == 3 && mesh->node == s.tracks[0].node);
+	CHECK(s.tracks[0].target == SCENERY_SHAPE && s.tracks[0].key_count == 3);
+	CHECK(s.numbers[s.tracks[0].first + 1] == 0.5f && s.numbers[s.tracks[0].first + 5] == 2);
+	CHECK(s.touch_count == 1 && s.motions[0].returns && s.motions[0].duration_s == 2);
+	for (uint32_t shape = 0; shape < 3; shape++)
+		for (uint32_t v = 0; v < 3; v++) {
+			const uint16_t *at = mesh->shapes[3 * shape + v].place;
+			float place[3];
+
+			for (int k = 0; k < 3; k++)
+				place[k] = mesh->origin_m[k] + mesh->step_m * (float)at[k];
+			CHECK(fabsf(place[0] - (v == 1 ? 2 : 0)) < 1e-3f);
+			CHECK(fabsf(place[1] - ((v == 2 ? 2 : 0) +
+						(v > 0 ? 4.0f * (float)shape : 0))) < 1e-3f);
+			CHECK(fabsf(place[2] - (v == 2 ? 8.0f * (float)shape : 0)) < 1e-3f);
+		}
+	scenery_finish(&s);
+	/* Without an animation it stands as its weights say. */
+	CHECK(make(&s, stands, &choice, &diagnostics, &warnings) == 0);
+	CHECK(s.meshes[0].shape_count == 0 && s.node_count == 1);
+	CHECK(fabsf(s.meshes[0].step_m * (SCENERY_PLACE_MAX - 1) - 4) < 1e-3f);
+	scenery_finish(&s);
+	/* Weights of a mesh without targets move nothing. */
+	CHECK(make(&s, idle, &choice, &diagnostics, &warnings) == 0);
+	CHECK(s.motion_count == 0 && strstr(warnings.first.text, "moves nothing of the scene"));
+	scenery_finish(&s);
+}
+
 static void what_is_refused_names_place_and_cure(void **state)
 {
 	static const struct {
@@ -238,11 +289,14 @@ static void what_is_refused_names_place_and_cure(void **state)
 		  "\"nodes\": [\n{\"name\": \"man\", \"mesh\": 0, \"skin\": 0}]," SCENES,
 		  "node \"man\" is bent by a skin, which scenery does not have; export it as stiff",
 		  -ENOTSUP },
-		{ ACCESSORS "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, "
-			    "\"targets\": [{}]}]}], \"nodes\": [{\"mesh\": 0}]," SCENES,
-		  "a mesh has morph targets", -ENOTSUP },
-		{ ACCESSORS MESHES NODES ANIMATION("weights", "\"input\": 1, \"output\": 1") SCENES,
-		  "animation \"open\" moves morph targets", -ENOTSUP },
+		{ ACCESSORS
+		  "\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}, "
+		  "\"targets\": [{\"POSITION\": 5}]}]}], \"nodes\": [{\"mesh\": 0}]," SCENES,
+		  "another number of vertices", -EBADMSG },
+		{ ACCESSORS MORPH "\"nodes\": [{}, {\"mesh\": 0}]," ANIMATION(
+			  "weights",
+			  "\"input\": 1, \"output\": 4") "\"scenes\": [{\"nodes\": [1]}]",
+		  "another number of times than of values", -EBADMSG },
 		{ ACCESSORS MESHES NODES ANIMATION("scale", "\"input\": 4, \"output\": 2") SCENES,
 		  "another number of times than of values", -EBADMSG },
 		{ ACCESSORS MESHES NODES ANIMATION("scale", "\"input\": 4, \"output\": 3") SCENES,
@@ -319,6 +373,7 @@ int main(void)
 		cmocka_unit_test(a_spline_is_followed_closely),
 		cmocka_unit_test(a_smooth_metal_shines_and_a_named_material_is_wood),
 		cmocka_unit_test(a_scene_is_chosen_by_its_name),
+		cmocka_unit_test(weights_of_morph_targets_make_shapes),
 		cmocka_unit_test(what_is_refused_names_place_and_cure),
 		cmocka_unit_test(a_glb_is_read_whole_or_not_at_all),
 	};
