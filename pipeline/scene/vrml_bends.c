@@ -8,7 +8,7 @@
 
 #include "pipeline/scene/vrml_faces.h"
 #include "pipeline/scene/vrml_graph.h"
-#include "pipeline/scene/vrml_motions.h"
+#include "pipeline/scene/vrml_keys.h"
 
 enum { PIECES = 8, KEYS_MAX = SCENERY_NUMBERS_MAX / (4 * PIECES) };
 

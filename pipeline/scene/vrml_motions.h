@@ -28,12 +28,6 @@ must_check int vrml_instances_add(struct vrml_instances *instances,
 				  const struct vrml_instance *instance);
 void vrml_instances_finish(struct vrml_instances *instances);
 
-/* Gets the keys and the values, of `width` numbers each, of an interpolator. -EBADMSG, with a
- * diagnostic: they do not fit together. */
-must_check int vrml_keys(const struct vrml_node *interpolator, uint32_t width,
-			 const struct vrml_value **keys, const struct vrml_value **values,
-			 struct diagnostics *diagnostics);
-
 /* A route that is not kept is a diagnostic in warnings. Errors as vrml_scenery_add. */
 must_check int vrml_motions_add(struct scenery_maker *maker, const struct vrml *scene,
 				const struct vrml_instances *instances,

@@ -12,7 +12,7 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_maker.h"
 #include "pipeline/scene/vrml_graph.h"
-#include "pipeline/scene/vrml_motions.h"
+#include "pipeline/scene/vrml_keys.h"
 
 /* The keys of both interpolators, and the two ends. */
 enum { WAY_VIEWS_MAX = 2 * SCENE_KEYS_MAX + 2 };
