@@ -239,6 +239,47 @@ static void a_tour_keeps_the_times_of_a_scenes_keys(void **state)
 	info_built_finish(&built);
 }
 
+/* A camera of glTF in a scene of its own, which scenes.json names. */
+static void a_camera_of_gltf_is_a_tour_too(void **state)
+{
+	/* times 0 1 4; the places 0 0 0, 6 0 0 and 6 3 0 */
+	static const char fly[] =
+		"{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"byteLength\": 48, \"uri\":"
+		" \"data:application/octet-stream;base64,"
+		"AAAAAAAAgD8AAIBAAAAAAAAAAAAAAAAAAADAQAAAAAAAAAAAAADAQAAAQEAAAAAA\"}],"
+		"\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 48}], \"accessors\": ["
+		"{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"SCALAR\"},"
+		"{\"bufferView\": 0, \"byteOffset\": 12, \"componentType\": 5126, \"count\": 3,"
+		" \"type\": \"VEC3\"}], \"cameras\": [{\"type\": \"perspective\"}],"
+		"\"scenes\": [{\"name\": \"empty\"}, {\"name\": \"film\", \"nodes\": [0]}],"
+		"\"nodes\": [{\"name\": \"eye\", \"camera\": 0}], \"animations\": [{\"channels\":"
+		" [{\"sampler\": 0, \"target\": {\"node\": 0, \"path\": \"translation\"}}],"
+		" \"samplers\": [{\"input\": 0, \"output\": 1}]}]}";
+	const struct info_tour *tour;
+	struct info_built built;
+	struct info *info;
+
+	(void)state;
+	write_scenes();
+	write_text("scenes/fly.gltf", fly);
+	write_text("scenes.json",
+		   "{\"scenes\": [{\"file\": \"scenes/fly.gltf\", \"scene\": \"film\"}]}");
+	write_text("tours.json",
+		   SCENE_TOUR("\"scene\": \"scenes/fly.gltf\", \"viewpoint\": \"eye\""));
+	CHECK(build(&built) == 0);
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	tour = info_tour(info, 0);
+	CHECK(tour->stop_count == 3 && tour->stops[1].travel_s == 1 &&
+	      tour->stops[2].travel_s == 3);
+	CHECK(!tour->stops[0].is_even && tour->stops[1].is_even && tour->stops[2].is_even);
+	/* y of the file is up, and a camera looks along -z, which is y of the site. */
+	CHECK(fabsf(tour->stops[2].eye_m[0] - 6) < 1e-4f &&
+	      fabsf(tour->stops[2].eye_m[2] - 3) < 1e-4f);
+	CHECK(fabsf(tour->stops[2].target_m[1] - 1) < 1e-4f);
+	info_close(info);
+	info_built_finish(&built);
+}
+
 /* A film of 300 keys along a circle: fewer are flown, and the way is kept. */
 static void a_film_has_as_many_keys_as_it_needs(void **state)
 {
@@ -447,6 +488,7 @@ int main(void)
 		IN_A_FOLDER(links_lead_to_tours_that_are_there),
 		IN_A_FOLDER(a_scene_gives_the_stops_of_a_tour),
 		IN_A_FOLDER(a_tour_keeps_the_times_of_a_scenes_keys),
+		IN_A_FOLDER(a_camera_of_gltf_is_a_tour_too),
 		IN_A_FOLDER(a_film_has_as_many_keys_as_it_needs),
 		IN_A_FOLDER(faults_of_a_tour_through_a_scene_are_named),
 		IN_A_FOLDER(faults_are_named_with_file_line_and_cure),
