@@ -66,14 +66,15 @@ TEST_SOURCES := $(shell find tests -name 'test_*.c' | sort)
 TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(shell find tests -name '*.c'))
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
-SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools/failing_calls tests/tools/set_clock
+SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools/failing_calls tests/tools/set_clock \
+            tests/tools/virtual_clock
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
 BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o $(BUILD)/obj/tests/bench/hand.o
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo curator test check soak torture golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo curator test check soak soak-year torture golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -107,6 +108,9 @@ check: all $(BUILD)/.test-deps ## the quick loop: format, include rules, unit te
 
 soak: all $(BUILD)/.test-deps ## random touches on the whole kiosk under sanitizers, EVENTS=20000 SEED=1 (a quarter of an hour)
 	@EVENTS=$(or $(EVENTS),20000) SEED=$(or $(SEED),1) bash tests/e2e/monkey.sh
+
+soak-year: all $(BUILD)/.test-deps ## a year of a terminal's days on a clock that is set forward (docs/life.md), DAYS=366 VISITS=1 (half an hour)
+	@DAYS=$(or $(DAYS),366) START=2027-11-15 VISITS=$(or $(VISITS),1) WORK=build/year bash tests/e2e/year.sh
 
 torture: all $(BUILD)/.test-deps ## every allocation and every call on a file fails once, in each use of the programs (hours); USES="keys build" SAMPLES=N
 	@SAMPLES=$(or $(SAMPLES),0) USES="$(USES)" bash tests/e2e/torture.sh

@@ -55,7 +55,7 @@ static int parse_event(struct parser *p, const char *line)
 	fields = sscanf(line, "%lf %15s %d %f %f %1s", &t_ms, word, &slot, &x, &y, rest);
 	if (fields < 3 || fields == 4 || fields > 5 || find_phase(word, &event.phase) < 0)
 		return -EINVAL;
-	if (slot < 0 || slot >= TOUCH_CONTACTS_MAX || !(t_ms >= 0 && t_ms < 1e9))
+	if (slot < 0 || slot >= TOUCH_CONTACTS_MAX || !(t_ms >= 0 && t_ms < 1e11))
 		return -EINVAL;
 	if (p->down[slot] == (event.phase == TOUCH_DOWN))
 		return -EINVAL; /* down twice, or move, up or cancel without down */
