@@ -1,16 +1,18 @@
-/* For LD_PRELOAD: a clock that can be set forward, for programs that are to live through a year in
- * an hour (tests/tools/museum_year.py). GOPURA_CLOCK names a file of struct shared, which all
- * programs map; who writes there moves the time of all of them at once. Time runs as ever between
- * two such moves.
+/* For LD_PRELOAD: a clock that can be set forward, for programs that are to
+ * live through a year in an hour (tests/tools/museum_year.py). GOPURA_CLOCK
+ * names a file of struct shared, which all programs map; who writes there moves
+ * the time of all of them at once. Time runs as ever between two such moves.
  *
- * A wait that a move ends must end: waits are cut into pieces of WAIT_MS, and timers are set anew
- * after a move. What sleeps without a wait that is known here sleeps in real time.
+ * A wait that a move ends must end: waits are cut into pieces of WAIT_MS, and
+ * timers are set anew after a move. What sleeps without a wait that is known
+ * here sleeps in real time.
  *
- * Counts what is written to regular files, for the wear of a card. GOPURA_LEAK_BYTES, of the
- * program that GOPURA_LEAK_IN names: so much memory is lost in each virtual hour, to see that it is
- * found. */
+ * Counts what is written to regular files, for the wear of a card.
+ * GOPURA_LEAK_BYTES, of the program that GOPURA_LEAK_IN names: so much memory
+ * is lost in each virtual hour, to see that it is found. */
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -36,6 +38,7 @@ enum { WAIT_MS = 5, FDS_MAX = 1024, PROGRAMS = 4, PAGE = 4096 };
 struct shared {
 	_Atomic int64_t monotonic_ns, wall_ns; /* ahead of the real clocks */
 	_Atomic uint64_t moves;
+	_Atomic uint64_t trims; /* when it rises, malloc gives back what is free, to be measured */
 	struct {
 		_Atomic uint64_t bytes, pages, syncs; /* pages: of 4 KiB that the writes touched */
 	} written[PROGRAMS];                          /* kiosk, fetch, health, others */
@@ -176,7 +179,8 @@ int timerfd_settime(int fd, int flags, const struct itimerspec *value, struct it
 	return set_real(fd, left > 0 ? left : 1, every);
 }
 
-/* After a move: what is still to come comes earlier. A timer that has gone off stays so. */
+/* After a move: what is still to come comes earlier. A timer that has gone off
+ * stays so. */
 static void follow_moves(void)
 {
 	uint64_t seen = moves_seen;
@@ -194,6 +198,16 @@ static void follow_moves(void)
 		left = timers[fd].due_ns - now_ns(timers[fd].clock);
 		set_real(fd, left > 0 ? left : 1, timers[fd].interval_ns);
 	}
+}
+
+static void trim(void)
+{
+	static _Atomic uint64_t trims;
+	uint64_t seen = trims;
+	const uint64_t now = shared ? shared->trims : seen;
+
+	if (seen != now && atomic_compare_exchange_strong(&trims, &seen, now))
+		malloc_trim(0);
 }
 
 static void leak(void)
@@ -214,12 +228,14 @@ static void leak(void)
 
 /* ---- waits */
 
-/* Returns how long to wait in real time, at most: 0 once the virtual deadline has passed. */
+/* Returns how long to wait in real time, at most: 0 once the virtual deadline
+ * has passed. */
 static int piece_ms(int64_t until_ns)
 {
 	const int64_t left_ms = (until_ns - now_ns(CLOCK_MONOTONIC) + 999999) / 1000000;
 
 	follow_moves();
+	trim();
 	leak();
 	return left_ms <= 0 ? 0 : left_ms < WAIT_MS ? (int)left_ms : WAIT_MS;
 }
