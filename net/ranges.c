@@ -5,6 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/clock.h"
+#include "base/log.h"
+
 struct slot {
 	struct hash hash;
 	uint64_t place;
@@ -20,6 +23,7 @@ struct range {
 	size_t count, now;    /* number of slots; index of the slot whose bytes arrive now */
 	uint64_t at;          /* place in the pack of the next byte */
 	uint64_t bytes;       /* size of the whole range */
+	int64_t asked_ms;     /* when it was requested */
 	uint32_t priority;    /* the highest of its wants */
 	struct buffer object; /* bytes received so far of the current slot */
 	struct slot slots[];
@@ -108,6 +112,9 @@ static void on_done(void *data, const struct http_result *result)
 	 */
 	int rc = result->rc == 0 ? -ENOENT : result->rc;
 
+	log_debug("net", "%llu bytes of a pack, priority %u, after %lld ms",
+		  (unsigned long long)range->bytes, range->priority,
+		  (long long)(clock_now_ms() - range->asked_ms));
 	if (rc == -EHOSTUNREACH)
 		link_failed(options->link, http_url(options->http), result->why);
 	else
@@ -174,6 +181,7 @@ int ranges_request(struct ranges *ranges, const struct range_item *items, size_t
 	}
 	buffer_init(&range->object, UINT32_MAX);
 	range->bytes = get.size;
+	range->asked_ms = clock_now_ms();
 	fill_slots(range, items, count);
 	link_range(ranges, range);
 	return 0;

@@ -20,6 +20,8 @@ enum {
 	SHOT_NAME_BYTES = 64,
 	VIEW_MOST_MS = 120000, /* longest wait for a view; then it is written with a warning */
 	QUIET_MS = 1200,       /* without a byte received; longer than the status interval */
+	FILM_FIRST_MS = 50,    /* between two pictures of a view while it loads, at least, */
+	FILM_SHARE = 40,       /* and this part of the time that it has been loading */
 	FRAMES_MAX = 4096,
 	LOOK_MS = 20, /* interval of frames that are drawn to see whether all is quiet */
 };
@@ -36,6 +38,7 @@ struct shot {
 struct capture {
 	const char *folder;
 	bool overlay; /* draw it on pictures of views too */
+	bool film;    /* take pictures of a view while it loads, too */
 	struct redraw *redraw;
 	struct view *views; /* owned */
 	struct shot *shots; /* owned */
@@ -44,6 +47,7 @@ struct capture {
 
 	int64_t began_ms;       /* start of this view, or of the replay; 0: not yet */
 	int64_t first_ms;       /* when its first picture was drawn; 0: not yet */
+	int64_t film_ms;        /* of the next picture while it loads, since it began */
 	int64_t quiet_since_ms; /* when it became quiet; 0: not settled */
 	uint64_t bytes_before;  /* bytes received when this view began */
 	uint64_t bytes_seen;
@@ -126,6 +130,7 @@ int capture_create(struct capture **out, const struct options *options, struct r
 		return -ENOMEM;
 	capture->folder = options->capture_dir;
 	capture->overlay = options->capture_overlay;
+	capture->film = options->capture_film;
 	capture->redraw = redraw;
 	if (mkdir(capture->folder, 0777) < 0 && errno != EEXIST)
 		rc = -errno;
@@ -236,6 +241,7 @@ static void begin_view(struct capture *capture, uint64_t received_bytes)
 {
 	capture->began_ms = clock_now_ms();
 	capture->first_ms = capture->quiet_since_ms = 0;
+	capture->film_ms = FILM_FIRST_MS;
 	capture->bytes_before = capture->at == 0 ? 0 : received_bytes;
 	capture->objects = 0;
 	capture->frames = 0;
@@ -273,6 +279,20 @@ static bool is_quiet(struct capture *capture, const struct capture_frame *frame,
 	return now_ms - capture->quiet_since_ms >= QUIET_MS;
 }
 
+/* Pictures of a view while it loads. They grow rarer with time, so that they show what changes and
+ * delay it little. */
+static int film(struct capture *capture, const struct capture_frame *frame, int64_t now_ms)
+{
+	const int64_t passed_ms = now_ms - capture->began_ms;
+	char name[48];
+
+	if (!capture->film || !capture->first_ms || passed_ms < capture->film_ms)
+		return 0;
+	capture->film_ms = passed_ms + FILM_FIRST_MS + passed_ms / FILM_SHARE;
+	snprintf(name, sizeof(name), "view-%04u-%06lld", capture->at, (long long)passed_ms);
+	return write_picture(capture, frame, name, !capture->overlay);
+}
+
 static int after_view(struct capture *capture, const struct capture_frame *frame)
 {
 	const int64_t now_ms = clock_now_ms();
@@ -289,7 +309,7 @@ static int after_view(struct capture *capture, const struct capture_frame *frame
 	quiet = is_quiet(capture, frame, now_ms);
 	late = now_ms - capture->began_ms > VIEW_MOST_MS;
 	if (!quiet && !late)
-		return 0;
+		return film(capture, frame, now_ms);
 	if (late)
 		log_warn("app", "view %u did not settle in %d s", capture->at, VIEW_MOST_MS / 1000);
 	snprintf(name, sizeof(name), "view-%04u", capture->at);

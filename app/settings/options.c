@@ -80,6 +80,7 @@ static const char help_text[] =
 	"  --capture DIR        folder for pictures: view-0000.png ... and views.jsonl, or the\n"
 	"                       screenshots\n"
 	"  --shots FILE         take screenshots during a replay; one a line: milliseconds and name\n"
+	"  --film               take pictures of a view while it loads, too, named by milliseconds\n"
 	"  --overlay            draw the user interface on pictures of --views too\n"
 	"\n"
 	"  --help, --version\n"
@@ -111,6 +112,7 @@ enum {
 	OPTION_VIEWS,
 	OPTION_CAPTURE,
 	OPTION_SHOTS,
+	OPTION_FILM,
 	OPTION_OVERLAY,
 	OPTION_POLL,
 	OPTION_DOWNLOAD,
@@ -153,6 +155,7 @@ static const struct option long_options[] = {
 	{ "views", required_argument, NULL, OPTION_VIEWS },
 	{ "capture", required_argument, NULL, OPTION_CAPTURE },
 	{ "shots", required_argument, NULL, OPTION_SHOTS },
+	{ "film", no_argument, NULL, OPTION_FILM },
 	{ "overlay", no_argument, NULL, OPTION_OVERLAY },
 	{ "poll-s", required_argument, NULL, OPTION_POLL },
 	{ "stick", required_argument, NULL, OPTION_STICK },
@@ -303,6 +306,9 @@ static bool set_value(struct options *o, int option, const char *text)
 		return true;
 	case OPTION_DOWNLOAD:
 		return daily_parse(&o->download, text) == 0;
+	case OPTION_FILM:
+		o->capture_film = true;
+		return true;
 	case OPTION_OVERLAY:
 		o->capture_overlay = true;
 		return true;

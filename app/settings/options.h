@@ -45,6 +45,7 @@ struct options {
 	const char *views_path; /* with capture_dir */
 	const char *capture_dir;
 	const char *shots_path; /* with capture_dir: "MS NAME" a line */
+	bool capture_film;      /* take pictures of views while they load, too */
 	bool capture_overlay;   /* draw the overlay on pictures of views too */
 	enum scene_mode mode;
 	const char *language;

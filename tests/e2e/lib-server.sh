@@ -1,10 +1,10 @@
 # Sourced by end-to-end tests that need the museum server. Run from the top of the tree.
 
-# start_server RELEASE RUN [PORT]: nginx in the background, on a free port unless one is given;
+# start_server RELEASE RUN [PORT [NAME ...]]: nginx in the background, on a free port unless one is given;
 # sets server_pid, server_url and server_ca once it answers.
 start_server() {
 	rm -f "$2/url"
-	server/serve.sh "$1" "${3:-0}" "$2" >"$2.log" 2>&1 &
+	server/serve.sh "$1" "${3:-0}" "$2" "${@:4}" >"$2.log" 2>&1 &
 	server_pid=$!
 	for _ in $(seq 200); do
 		[ ! -f "$2/url" ] || break
