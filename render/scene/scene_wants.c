@@ -326,8 +326,28 @@ static void want_images(struct scene *scene)
 
 /* ---- the list */
 
-/* Before what is seen only from nearby, after what a first picture is made of. */
-enum { SPACE_PRIORITY = MESSAGE_PRIORITY_INDEX - 1 };
+/* Where the eye may go is felt, not seen: after what improves the picture by two pixels a kilobyte.
+ */
+enum { SOLID_PRIORITY = 328000 };
+
+/* What stands beside the scan is not known before it is here; it may fill a quarter of the picture.
+ */
+static uint32_t scenery_priority(const struct scene *scene, uint32_t bytes)
+{
+	return plan_priority(scene->view.picture_px / 4 * misplaced(INFINITY), bytes);
+}
+
+static void want_surroundings(struct scene *scene)
+{
+	const uint32_t child = root_page_scenery(&scene->root, scene->root_child_count);
+
+	if (scene->root.has_scenery && !scene->scenery.is_here)
+		want_child_of_root(scene, OBJECT_SCENERY, child,
+				   scenery_priority(scene, scene->root_child[child].size));
+	if (scene->root.has_solid && !scene->solid.nodes)
+		want_child_of_root(scene, OBJECT_SOLID, scene->root_child_count - 1,
+				   SOLID_PRIORITY);
+}
 
 static int by_priority(const void *a, const void *b)
 {
@@ -373,13 +393,10 @@ void scene_list_wants(struct scene *scene)
 	if (!scene->repository.ready && images)
 		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
-	if (scene->root.has_scenery && !scene->scenery.is_here)
-		want_child_of_root(scene, OBJECT_SCENERY,
-				   root_page_scenery(&scene->root, scene->root_child_count),
-				   FIRST_PRIORITY - 1);
-	if (scene->root.has_solid && !scene->solid.nodes)
-		want_child_of_root(scene, OBJECT_SOLID, scene->root_child_count - 1,
-				   SPACE_PRIORITY);
+	/* Not while there is nothing better to ask for yet: a range that is under way is not held.
+	 */
+	if (scene_first_cut_is_here(scene))
+		want_surroundings(scene);
 	if (scene->has_hierarchy)
 		want_groups(scene);
 	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))
