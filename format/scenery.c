@@ -39,6 +39,15 @@ bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_tar
 	return false;
 }
 
+uint32_t scenery_texels(const struct scenery *scenery)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = 0; i < scenery->texture_count; i++)
+		count += (uint32_t)scenery->textures[i].width * scenery->textures[i].height;
+	return count;
+}
+
 /* ---- nodes and meshes */
 
 static bool are_near(const float *numbers, int count)
@@ -93,6 +102,28 @@ static bool is_within(float number, float least, float most)
 	return number >= least && number <= most;
 }
 
+static bool is_side(uint16_t px)
+{
+	return px > 0 && px <= SCENERY_TEXTURE_PX_MAX && (px & (px - 1)) == 0;
+}
+
+static bool textures_are_sane(const struct scenery *scenery)
+{
+	uint32_t texels = 0;
+
+	if (scenery->texture_count > SCENERY_TEXTURES_MAX)
+		return false;
+	for (uint32_t i = 0; i < scenery->texture_count; i++) {
+		const struct scenery_texture *texture = &scenery->textures[i];
+
+		texels += (uint32_t)texture->width * texture->height;
+		if (!is_side(texture->width) || !is_side(texture->height) ||
+		    texels > SCENERY_TEXELS_MAX || texture->jpeg_bytes == 0)
+			return false;
+	}
+	return true;
+}
+
 static bool materials_are_sane(const struct scenery *scenery)
 {
 	if (scenery->material_count > SCENERY_MATERIALS_MAX)
@@ -100,12 +131,13 @@ static bool materials_are_sane(const struct scenery *scenery)
 	for (uint32_t i = 0; i < scenery->material_count; i++) {
 		const struct scenery_material *material = &scenery->materials[i];
 		const uint8_t *rgb = material->specular;
-		const bool needs_pixels =
-			material->substance || material->relief_m > 0 || material->mirror > 0;
+		const bool needs_pixels = material->substance || material->relief_m > 0 ||
+					  material->mirror > 0 || material->texture;
 
 		if (!is_within(material->opacity, 1.0f / 255, 1) ||
 		    !is_within(material->shininess, rgb[0] || rgb[1] || rgb[2] ? 1 : 0, 128) ||
 		    material->substance >= SCENERY_SUBSTANCES ||
+		    material->texture > scenery->texture_count ||
 		    !is_within(material->relief_m, 0, 0.1f) || !is_within(material->mirror, 0, 1) ||
 		    !is_unit(material->grain, 3) || (needs_pixels && !material->by_pixel))
 			return false;
@@ -129,6 +161,9 @@ static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mes
 	    mesh->vertex_count < 3 || mesh->vertex_count > SCENERY_VERTICES_MAX ||
 	    mesh->triangle_count < 1 || mesh->triangle_count > SCENERY_TRIANGLES_MAX ||
 	    mesh->shape_count > SCENERY_SHAPES_MAX)
+		return false;
+	if ((scenery->materials[mesh->material].texture > 0) != (mesh->uvs != NULL) ||
+	    !are_near(mesh->uv_origin, 2) || !are_near(mesh->uv_step, 2))
 		return false;
 	for (uint32_t t = 0; t < mesh->triangle_count; t++)
 		for (int k = 0; k < 3; k++)
@@ -339,8 +374,9 @@ static bool layers_are_sane(const struct scenery *scenery)
 
 bool scenery_is_sane(const struct scenery *scenery)
 {
-	return nodes_are_sane(scenery) && materials_are_sane(scenery) && fog_is_sane(scenery) &&
-	       meshes_are_sane(scenery) && touches_are_sane(scenery) && motions_are_sane(scenery) &&
+	return nodes_are_sane(scenery) && textures_are_sane(scenery) &&
+	       materials_are_sane(scenery) && fog_is_sane(scenery) && meshes_are_sane(scenery) &&
+	       touches_are_sane(scenery) && motions_are_sane(scenery) &&
 	       scenery_bends_fit(scenery) && drags_are_sane(scenery) && layers_are_sane(scenery);
 }
 
@@ -352,7 +388,13 @@ void scenery_finish(struct scenery *scenery)
 		free(scenery->meshes[i].vertices);
 		free(scenery->meshes[i].triangles);
 		free(scenery->meshes[i].shapes);
+		free(scenery->meshes[i].uvs);
 	}
+	for (uint32_t i = 0; scenery->textures && i < scenery->texture_count; i++) {
+		free(scenery->textures[i].jpeg);
+		free(scenery->textures[i].rgba);
+	}
+	free(scenery->textures);
 	free(scenery->nodes);
 	free(scenery->materials);
 	free(scenery->meshes);

@@ -14,6 +14,9 @@ enum {
 	SCENERY_DEPTH_MAX = 64, /* of nodes below each other */
 	SCENERY_MESHES_MAX = 4096,
 	SCENERY_MATERIALS_MAX = 256,
+	SCENERY_TEXTURES_MAX = SCENERY_MATERIALS_MAX,
+	SCENERY_TEXTURE_PX_MAX = 2048, /* a side of a picture */
+	SCENERY_TEXELS_MAX = 1 << 22,  /* pixels of all pictures */
 	SCENERY_SUBSTANCES = 5, /* as many as enum substance_kind of geometry/substance.h has */
 	SCENERY_VERTICES_MAX = 65535,          /* of a mesh */
 	SCENERY_TRIANGLES_MAX = 1 << 18,       /* of a mesh */
@@ -67,13 +70,23 @@ struct scenery_material {
 	uint8_t emissive[3]; /* sRGB; added to the colour, whatever the light */
 	uint8_t specular[3]; /* sRGB; of the highlight of the sun */
 	float shininess;     /* 1 to 128: exponent of the highlight, if specular is not black */
-	/* The next three need by_pixel. */
+	/* The next four need by_pixel. */
+	uint16_t texture; /* 1 + index of a picture, by which the colours are multiplied; 0: none */
 	uint8_t substance; /* enum substance_kind: its pattern is on the colours; 0: none */
 	/* Up to 0.1: how deep the dark places of the substance lie below the light ones; without a
 	 * substance, the hollows of hewn stone. */
 	float relief_m;
 	float mirror;   /* 0 to 1: share of what is around it in its colour */
 	float grain[3]; /* unit vector in the node: the substance's axis, as that of a tree */
+};
+
+/* A picture on surfaces. */
+struct scenery_texture {
+	uint16_t width, height; /* powers of two */
+	bool repeats;           /* else its outermost pixels go on beyond its sides */
+	uint32_t jpeg_bytes;
+	uint8_t *jpeg; /* owned: its file */
+	uint8_t *rgba; /* owned: 4 bytes a pixel, row 0 on top; NULL: not decoded */
 };
 
 /* What is far away fades into a colour, the scan too. */
@@ -103,6 +116,10 @@ struct scenery_mesh {
 	uint32_t vertex_count, triangle_count;
 	struct scenery_vertex *vertices; /* owned */
 	uint16_t (*triangles)[3];        /* owned; counter-clockwise seen from outside */
+	/* Of each vertex where the picture of the material lies: a place from its left and from its
+	 * top, each 1 wide = uv_origin + uv_step * uvs. Owned; NULL: the material has none. */
+	uint16_t (*uvs)[2];
+	float uv_origin[2], uv_step[2];
 	/* What SCENERY_SHAPE of its node chooses from; 0: it is stiff. Each has all vertices. */
 	uint32_t shape_count;
 	struct scenery_shape_vertex *shapes; /* owned; shape by shape */
@@ -187,9 +204,10 @@ struct scenery_layer {
 struct scenery {
 	uint32_t node_count, mesh_count, motion_count, touch_count, track_count, number_count;
 	uint32_t layer_count; /* 0, or at least 2 */
-	uint32_t title_count, material_count, drag_count;
+	uint32_t title_count, material_count, texture_count, drag_count;
 	struct scenery_node *nodes;
 	struct scenery_material *materials;
+	struct scenery_texture *textures;
 	struct scenery_mesh *meshes;
 	struct scenery_motion *motions;
 	struct scenery_touch *touches;
@@ -209,6 +227,8 @@ bool scenery_is_sane(const struct scenery *scenery);
 bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_target target);
 /* Returns whether no more vertices change, and no more are in shapes, than may. */
 bool scenery_bends_fit(const struct scenery *scenery);
+/* Returns the pixels of all pictures. */
+uint32_t scenery_texels(const struct scenery *scenery);
 /* Returns the triangles of all meshes. */
 uint32_t scenery_triangles(const struct scenery *scenery);
 

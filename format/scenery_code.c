@@ -8,10 +8,12 @@
 #include <zstd.h>
 
 #include "format/scenery_motion_code.h"
+#include "format/scenery_texture_code.h"
 
 enum {
-	VERSION = 3,
-	VERSION_STIFF = 2, /* without shapes and drags */
+	VERSION = 4,
+	VERSION_NO_TEXTURES = 3, /* without pictures; what has none is written so */
+	VERSION_STIFF = 2,       /* without shapes and drags */
 	VERSION_PLAIN = 1, /* without materials and fog; a mesh said whether it has two sides */
 	ZSTD_LEVEL = 19,
 	HEADER_BYTES = 9,
@@ -298,6 +300,8 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 	put_layers(out, scenery);
 	scenery_put_drags(out, scenery);
 	put_shapes(out, scenery);
+	if (scenery->texture_count > 0)
+		scenery_put_textures(out, scenery);
 }
 
 int scenery_encode(struct buffer *out, const struct scenery *scenery)
@@ -323,7 +327,7 @@ int scenery_encode(struct buffer *out, const struct scenery *scenery)
 		rc = -EFBIG;
 	if (rc == 0) {
 		buffer_put(out, magic, sizeof(magic));
-		buffer_put_u8(out, VERSION);
+		buffer_put_u8(out, scenery->texture_count > 0 ? VERSION : VERSION_NO_TEXTURES);
 		buffer_put_u32(out, (uint32_t)raw.size);
 		buffer_put(out, packed, size);
 		rc = out->error;
@@ -366,7 +370,7 @@ static int get_counts(struct reader *in, struct scenery *out, uint8_t version)
 		out->material_count = get_count(in, SCENERY_MATERIALS_MAX, MATERIAL_BYTES);
 	else
 		out->material_count = PLAIN_MATERIALS;
-	if (version == VERSION)
+	if (version > VERSION_STIFF)
 		out->drag_count = get_count(in, SCENERY_DRAGS_MAX, SCENERY_DRAG_BYTES);
 	if (in->failed)
 		return -EBADMSG;
@@ -404,10 +408,12 @@ static int get_raw(struct scenery *out, struct bytes raw, uint8_t version)
 		rc = scenery_get_motions(&in, out);
 	if (rc == 0)
 		get_layers(&in, out);
-	if (rc == 0 && version == VERSION) {
+	if (rc == 0 && version > VERSION_STIFF) {
 		scenery_get_drags(&in, out);
 		rc = get_shapes(&in, out);
 	}
+	if (rc == 0 && version == VERSION)
+		rc = scenery_get_textures(&in, out);
 	if (rc == 0) {
 		if (in.failed || reader_left(&in) > 0 || !scenery_is_sane(out))
 			rc = -EBADMSG;

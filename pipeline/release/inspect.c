@@ -251,6 +251,10 @@ static int print_scenery(FILE *to, struct bytes bytes)
 	fprintf(to, "scenery, %zu bytes: %u triangles in %u meshes, %u nodes, %u motions\n",
 		bytes.size, scenery_triangles(&scenery), scenery.mesh_count, scenery.node_count,
 		scenery.motion_count);
+	for (uint32_t i = 0; i < scenery.texture_count; i++)
+		fprintf(to, "  picture %u: %u x %u pixels, %u bytes\n", i + 1,
+			scenery.textures[i].width, scenery.textures[i].height,
+			scenery.textures[i].jpeg_bytes);
 	for (uint32_t i = 0; i < scenery.layer_count; i++)
 		fprintf(to, "  layer %-13u %s\n", i,
 			scenery.titles[scenery.layers[i].first_title].text);

@@ -7,6 +7,7 @@
 #include "format/article.h"
 #include "format/label.h"
 #include "format/scenery_code.h"
+#include "format/scenery_texture_code.h"
 #include "format/solid.h"
 #include "format/stream.h"
 #include "format/stream_page.h"
@@ -49,6 +50,8 @@ static int check_scenery(struct verify_walk *walk, const struct verify_page *pag
 		return rc;
 	count(&walk->report->scenery, object);
 	rc = scenery_decode(&scenery, object);
+	if (rc == 0)
+		rc = scenery_decode_textures(&scenery);
 	scenery_finish(&scenery);
 	return rc == -EBADMSG ? blame_child(walk, page, child, "scenery", "does not decode") : rc;
 }

@@ -10,6 +10,7 @@
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_bend.h"
 #include "pipeline/scene/scenery_mesh.h"
+#include "pipeline/scene/scenery_texture.h"
 
 const struct scenery_material scenery_plain = { .opacity = 1, .grain = { 0, 0, 1 } };
 const struct scenery_place scenery_at_rest = { .turn = { 0, 0, 0, 1 },
@@ -41,10 +42,11 @@ int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *nod
 
 static bool are_equal(const struct scenery_material *a, const struct scenery_material *b)
 {
-	return a->has_two_sides == b->has_two_sides && a->by_pixel == b->by_pixel &&
-	       a->opacity == b->opacity && a->shininess == b->shininess &&
-	       a->substance == b->substance && a->relief_m == b->relief_m &&
-	       a->mirror == b->mirror && vec_dot(a->grain, b->grain) > 0.99999f &&
+	return a->texture == b->texture && a->has_two_sides == b->has_two_sides &&
+	       a->by_pixel == b->by_pixel && a->opacity == b->opacity &&
+	       a->shininess == b->shininess && a->substance == b->substance &&
+	       a->relief_m == b->relief_m && a->mirror == b->mirror &&
+	       vec_dot(a->grain, b->grain) > 0.99999f &&
 	       memcmp(a->emissive, b->emissive, sizeof(a->emissive)) == 0 &&
 	       memcmp(a->specular, b->specular, sizeof(a->specular)) == 0;
 }
@@ -80,20 +82,56 @@ static int find_sheet(struct scenery_maker *maker, uint32_t node, uint32_t mater
 	if (rc < 0)
 		return rc;
 	*found = &maker->sheets[maker->sheet_count++];
-	**found = (struct scenery_sheet){ .node = node, .material = material };
+	**found = (struct scenery_sheet){
+		.node = node,
+		.material = material,
+		.has_picture = maker->out.materials[material].texture > 0,
+	};
 	return 0;
 }
 
-/* Returns how many triangles a surface with a picture may have. What is transparent is sorted in
- * each frame, so it is not divided. */
-static uint32_t most_painted(const struct scenery_maker *maker,
-			     const struct scenery_material *material)
+/* Whether the picture is seen beyond its sides. */
+static bool leaves_picture(const struct soup_triangle *triangles, uint32_t count)
 {
-	const uint32_t left = SCENERY_PAINT_MAX - maker->paint_count;
+	const float edge = 1e-4f;
 
-	if (material->opacity < 1)
-		return 0;
-	return left / 2 < SCENERY_PAINT_SURFACE_MAX ? left / 2 : SCENERY_PAINT_SURFACE_MAX;
+	for (uint32_t i = 0; i < 6 * count; i++) {
+		const float at = triangles[i / 6].corners[i % 6 / 2].uv[i % 2];
+
+		if (at < -edge || at > 1 + edge)
+			return true;
+	}
+	return false;
+}
+
+/* Finds or adds a picture; *number counts from 1. */
+static int find_texture(struct scenery_maker *maker, const struct picture *picture, bool repeats,
+			uint16_t *number)
+{
+	const struct scenery_source source = scenery_source_of(picture, repeats);
+	struct scenery *out = &maker->out;
+	uint32_t left = SCENERY_TEXELS_MAX - scenery_texels(out), i;
+	int rc;
+
+	for (i = 0; i < out->texture_count; i++)
+		if (scenery_source_equals(&maker->sources[i], &source)) {
+			*number = (uint16_t)(i + 1);
+			return 0;
+		}
+	rc = ARRAY_RESERVE(out->textures, maker->texture_room, (uint64_t)i + 1,
+			   SCENERY_TEXTURES_MAX);
+	if (rc == 0)
+		rc = ARRAY_RESERVE(maker->sources, maker->source_room, (uint64_t)i + 1,
+				   SCENERY_TEXTURES_MAX);
+	if (rc == 0 && left < 2)
+		rc = -EFBIG;
+	if (rc == 0)
+		rc = scenery_texture_make(&out->textures[i], picture, repeats, left / 2);
+	if (rc < 0)
+		return rc;
+	maker->sources[out->texture_count++] = source;
+	*number = (uint16_t)out->texture_count;
+	return 0;
 }
 
 int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
@@ -101,34 +139,30 @@ int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 			const struct soup_triangle *triangles, uint32_t count, float crease_rad,
 			const struct picture *picture)
 {
-	struct scenery_paint paint = { .pieces = 1 };
+	struct scenery_material kept = *material;
 	struct scenery_sheet *sheet = NULL;
-	uint32_t number, divided;
+	uint32_t number;
 	int rc = 0;
 
 	if (count == 0)
 		return 0;
-	if (picture)
-		rc = scenery_paint_init(&paint, picture, triangles, count,
-					most_painted(maker, material));
-	divided = count * paint.pieces * paint.pieces;
-	if (rc == 0 &&
-	    (divided > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
-	     (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count)))
+	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
+	    (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
 		rc = -EFBIG;
+	if (rc == 0 && picture) {
+		rc = find_texture(maker, picture, leaves_picture(triangles, count), &kept.texture);
+		kept.by_pixel = true;
+	}
 	if (rc == 0)
-		rc = find_material(maker, material, &number);
+		rc = find_material(maker, &kept, &number);
 	if (rc == 0)
 		rc = find_sheet(maker, node, number, &sheet);
 	if (rc == 0)
-		rc = scenery_sheet_add(sheet, triangles, count, crease_rad,
-				       picture ? &paint : NULL);
+		rc = scenery_sheet_add(sheet, triangles, count, crease_rad);
 	if (rc == 0) {
 		maker->clear_count += material->opacity < 1 ? count : 0;
-		maker->triangle_count += divided;
-		maker->paint_count += divided - count;
+		maker->triangle_count += count;
 	}
-	scenery_paint_finish(&paint);
 	return rc;
 }
 
@@ -290,6 +324,7 @@ void scenery_maker_finish(struct scenery_maker *maker)
 	for (uint32_t i = 0; i < maker->sheet_count; i++)
 		scenery_sheet_finish(&maker->sheets[i]);
 	free(maker->sheets);
+	free(maker->sources);
 	scenery_finish(&maker->out);
 	*maker = (struct scenery_maker){ 0 };
 }

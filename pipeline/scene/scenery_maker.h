@@ -8,13 +8,9 @@
 #include "geometry/substance.h"
 #include "pipeline/scene/soup.h"
 
-/* The triangles of a node that become meshes. */
+/* The triangles of a node that become meshes, and what a picture was made of. */
 struct scenery_sheet;
-
-enum {
-	SCENERY_PAINT_MAX = 1 << 17,         /* triangles that all pictures add */
-	SCENERY_PAINT_SURFACE_MAX = 1 << 16, /* of a surface with a picture, unless it had more */
-};
+struct scenery_source;
 
 /* What the content adds to the materials of a file that are called so. */
 struct scenery_look {
@@ -29,7 +25,9 @@ struct scenery_maker {
 	struct scenery out; /* its meshes are made at the end */
 	uint32_t node_room, motion_room, touch_room, track_room, number_room, mesh_room;
 	uint32_t drag_room;
-	uint32_t material_room, clear_count, paint_count;
+	uint32_t material_room, clear_count, texture_room;
+	struct scenery_source *sources; /* owned; of each picture, as many as out has */
+	uint32_t source_room;
 	struct scenery_sheet *sheets; /* owned */
 	uint32_t sheet_count, sheet_room, triangle_count;
 	struct scenery_look *looks; /* borrowed; of the file that is being read */
@@ -50,7 +48,7 @@ must_check int scenery_add_node(struct scenery_maker *maker, const struct scener
 				uint32_t *number);
 /* Adds triangles in the node's metres. Equal materials are kept once. Edges where faces meet at
  * more than crease_rad stay sharp; across others light is smooth. picture: on the triangles, by
- * their uv, or NULL; they are divided for it, within the limits above. */
+ * their uv, or NULL; equal ones are kept once, as large as the budget of pixels allows. */
 must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,

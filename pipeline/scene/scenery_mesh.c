@@ -102,76 +102,11 @@ static bool has_area(const struct scenery_corner corners[3])
 	return vec_dot(normal, normal) > 0;
 }
 
-/* The corner of a triangle at a place between its corners; the shares of these have the sum 1. */
-static struct scenery_corner between(const struct scenery_corner corners[3], const float shares[3],
-				     const struct scenery_paint *paint)
-{
-	struct scenery_corner out = { 0 };
-	float rgb[3] = { 0.5f, 0.5f, 0.5f };
-
-	for (int i = 0; i < 3; i++) {
-		vec_add_scaled(out.position, out.position, shares[i], corners[i].position);
-		vec_add_scaled(out.normal, out.normal, shares[i], corners[i].normal);
-		for (int k = 0; k < 2; k++)
-			out.uv[k] += shares[i] * corners[i].uv[k];
-		for (int k = 0; k < 3; k++)
-			rgb[k] += shares[i] * (float)corners[i].rgb[k];
-	}
-	vec_normalise(out.normal);
-	for (int k = 0; k < 3; k++)
-		out.rgb[k] = (uint8_t)vec_least(rgb[k], 255);
-	scenery_paint_colour(paint, out.uv, out.rgb);
-	return out;
-}
-
-static int divide(struct scenery_sheet *sheet, const struct scenery_corner corners[3],
-		  const struct scenery_paint *paint)
-{
-	const uint32_t n = paint->pieces;
-	int rc = ARRAY_RESERVE(sheet->triangles, sheet->room,
-			       (uint64_t)sheet->count + (uint64_t)n * n, SCENERY_ALL_TRIANGLES_MAX);
-
-	/* Rows from the first corner on; in each, triangles that point towards it and away. */
-	for (uint32_t row = 0; row < n && rc == 0; row++)
-		for (uint32_t i = 0; i < 2 * row + 1; i++) {
-			const uint32_t at = i / 2;
-			const uint32_t places[2][3][2] = {
-				{ { row, at }, { row + 1, at }, { row + 1, at + 1 } },
-				{ { row, at }, { row + 1, at + 1 }, { row, at + 1 } }
-			};
-			struct scenery_corner *to = sheet->triangles[sheet->count++];
-
-			for (int k = 0; k < 3; k++) {
-				const uint32_t *place = places[i % 2][k];
-				const float shares[3] = { (float)(n - place[0]) / (float)n,
-							  (float)(place[0] - place[1]) / (float)n,
-							  (float)place[1] / (float)n };
-
-				to[k] = between(corners, shares, paint);
-			}
-		}
-	return rc;
-}
-
-/* Divides the last triangles of the sheet, from `first` on. */
-static int divide_all(struct scenery_sheet *sheet, uint32_t first,
-		      const struct scenery_paint *paint)
-{
-	const uint32_t count = sheet->count - first;
-	struct scenery_corner(*whole)[3] = malloc(((size_t)count + 1) * sizeof(*whole));
-	int rc = whole ? 0 : -ENOMEM;
-
-	if (whole && count > 0)
-		memcpy(whole, sheet->triangles[first], count * sizeof(*whole));
-	sheet->count = first;
-	for (uint32_t i = 0; i < count && rc == 0; i++)
-		rc = divide(sheet, whole[i], paint);
-	free(whole);
-	return rc;
-}
+/* Where a picture lies that repeats more often than this, no number says well. */
+static const float most_uv = 10000;
 
 int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
-		      uint32_t count, float crease_rad, const struct scenery_paint *paint)
+		      uint32_t count, float crease_rad)
 {
 	uint32_t before = sheet->count;
 	int rc = ARRAY_RESERVE(sheet->triangles, sheet->room, (uint64_t)sheet->count + count,
@@ -184,22 +119,26 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 			const struct soup_corner *from = &triangles[i].corners[k];
 
 			memcpy(to[k].position, from->position, sizeof(to[k].position));
-			memcpy(to[k].uv, from->uv, sizeof(to[k].uv));
+			for (int axis = 0; axis < 2; axis++)
+				to[k].uv[axis] =
+					fabsf(from->uv[axis]) <= most_uv ? from->uv[axis] : 0;
+			to[k].uv[1] = 1 - to[k].uv[1]; /* the format counts from the top */
 			memcpy(to[k].rgb, from->rgb, sizeof(to[k].rgb));
 		}
 		sheet->count += has_area(to);
 	}
 	if (rc == 0 && sheet->count > before)
 		rc = scenery_smooth(&sheet->triangles[before], sheet->count - before, crease_rad);
-	return rc == 0 && paint ? divide_all(sheet, before, paint) : rc;
+	return rc;
 }
 
 /* ---- meshes */
 
 /* The mesh that is being filled, and its vertices by their bytes. */
 struct filling {
-	struct scenery_mesh mesh; /* vertices and triangles are owned */
-	uint32_t vertex_room, triangle_room;
+	struct scenery_mesh mesh; /* what it points to is owned */
+	uint32_t vertex_room, triangle_room, uv_room;
+	bool has_picture;
 	struct map vertices;
 };
 
@@ -222,6 +161,36 @@ static void measure(struct scenery_mesh *mesh, const struct scenery_sheet *sheet
 	mesh->step_m = longest / (SCENERY_PLACE_MAX - 1);
 }
 
+/* The same for where the picture lies. */
+static void measure_uvs(struct scenery_mesh *mesh, const struct scenery_sheet *sheet)
+{
+	for (int k = 0; k < 2; k++) {
+		float low = INFINITY, high = -INFINITY;
+
+		for (uint32_t i = 0; i < 3 * sheet->count; i++) {
+			const float at = sheet->triangles[i / 3][i % 3].uv[k];
+
+			low = vec_least(low, at);
+			high = vec_most(high, at);
+		}
+		mesh->uv_origin[k] = low;
+		mesh->uv_step[k] = (high - low) / SCENERY_PLACE_MAX;
+	}
+}
+
+static void uv_of(uint16_t out[2], const struct scenery_mesh *mesh,
+		  const struct scenery_corner *corner)
+{
+	for (int k = 0; k < 2; k++) {
+		const float step = mesh->uv_step[k];
+
+		out[k] = step > 0 ? (uint16_t)vec_least(
+					    roundf((corner->uv[k] - mesh->uv_origin[k]) / step),
+					    SCENERY_PLACE_MAX)
+				  : 0;
+	}
+}
+
 static struct scenery_vertex vertex_of(const struct scenery_mesh *mesh,
 				       const struct scenery_corner *corner)
 {
@@ -235,9 +204,9 @@ static struct scenery_vertex vertex_of(const struct scenery_mesh *mesh,
 	return vertex;
 }
 
-static map_key key_of(const struct scenery_vertex *vertex)
+static map_key key_of(const struct scenery_vertex *vertex, const uint16_t uv[2])
 {
-	map_key key = 0;
+	map_key key = (map_key)uv[0] << 16 | uv[1];
 
 	for (int k = 0; k < 3; k++)
 		key = key << 16 | vertex->place[k];
@@ -253,8 +222,13 @@ static int find_vertex(struct filling *filling, const struct scenery_corner *cor
 {
 	struct scenery_mesh *mesh = &filling->mesh;
 	struct scenery_vertex vertex = vertex_of(mesh, corner);
-	uint64_t found = map_get(&filling->vertices, key_of(&vertex));
+	uint16_t uv[2] = { 0 };
+	uint64_t found;
 	int rc;
+
+	if (filling->has_picture)
+		uv_of(uv, mesh, corner);
+	found = map_get(&filling->vertices, key_of(&vertex, uv));
 
 	if (found != MAP_NONE) {
 		*number = (uint16_t)found;
@@ -262,10 +236,15 @@ static int find_vertex(struct filling *filling, const struct scenery_corner *cor
 	}
 	rc = ARRAY_RESERVE(mesh->vertices, filling->vertex_room, (uint64_t)mesh->vertex_count + 1,
 			   SCENERY_VERTICES_MAX);
+	if (rc == 0 && filling->has_picture)
+		rc = ARRAY_RESERVE(mesh->uvs, filling->uv_room, (uint64_t)mesh->vertex_count + 1,
+				   SCENERY_VERTICES_MAX);
 	if (rc == 0)
-		rc = map_set(&filling->vertices, key_of(&vertex), mesh->vertex_count);
+		rc = map_set(&filling->vertices, key_of(&vertex, uv), mesh->vertex_count);
 	if (rc < 0)
 		return rc;
+	if (filling->has_picture)
+		memcpy(mesh->uvs[mesh->vertex_count], uv, sizeof(uv));
 	*number = (uint16_t)mesh->vertex_count;
 	mesh->vertices[mesh->vertex_count++] = vertex;
 	return 0;
@@ -286,8 +265,9 @@ static int end_mesh(struct filling *filling, struct scenery *out, uint32_t *mesh
 	out->meshes[out->mesh_count++] = *mesh;
 	mesh->vertices = NULL;
 	mesh->triangles = NULL;
+	mesh->uvs = NULL;
 	mesh->vertex_count = mesh->triangle_count = 0;
-	filling->vertex_room = filling->triangle_room = 0;
+	filling->vertex_room = filling->triangle_room = filling->uv_room = 0;
 	map_clear(&filling->vertices);
 	return 0;
 }
@@ -310,12 +290,15 @@ static int add_triangle(struct filling *filling, const struct scenery_corner cor
 int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,
 			 uint32_t *mesh_room)
 {
-	struct filling filling = { .mesh = { .node = sheet->node, .material = sheet->material } };
+	struct filling filling = { .mesh = { .node = sheet->node, .material = sheet->material },
+				   .has_picture = sheet->has_picture };
 	int rc = 0;
 
 	if (sheet->count == 0)
 		return 0;
 	measure(&filling.mesh, sheet);
+	if (sheet->has_picture)
+		measure_uvs(&filling.mesh, sheet);
 	for (uint32_t i = 0; i < sheet->count && rc == 0; i++) {
 		if (filling.mesh.vertex_count > SCENERY_VERTICES_MAX - 3 ||
 		    filling.mesh.triangle_count == SCENERY_TRIANGLES_MAX)
@@ -327,6 +310,7 @@ int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,
 		rc = end_mesh(&filling, out, mesh_room);
 	free(filling.mesh.vertices);
 	free(filling.mesh.triangles);
+	free(filling.mesh.uvs);
 	map_finish(&filling.vertices);
 	return rc;
 }

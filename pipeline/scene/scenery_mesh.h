@@ -3,7 +3,6 @@
 #define GOPURA_PIPELINE_SCENE_SCENERY_MESH_H
 
 #include "format/scenery.h"
-#include "pipeline/scene/scenery_paint.h"
 #include "pipeline/scene/soup.h"
 
 struct scenery_corner {
@@ -13,6 +12,7 @@ struct scenery_corner {
 
 struct scenery_sheet {
 	uint32_t node, material;
+	bool has_picture;                      /* of its material: uv counts */
 	struct scenery_corner (*triangles)[3]; /* owned */
 	uint32_t count, room;
 };
@@ -21,11 +21,9 @@ struct scenery_sheet {
 must_check int scenery_smooth(struct scenery_corner (*triangles)[3], uint32_t count,
 			      float crease_rad);
 /* Adds triangles, with normals that are smooth where faces meet at no more than crease_rad.
- * Triangles without an area are left out. paint: a picture on them, by which they are divided, or
- * NULL. -EFBIG, -ENOMEM. */
+ * Triangles without an area are left out. -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
-				 uint32_t count, float crease_rad,
-				 const struct scenery_paint *paint);
+				 uint32_t count, float crease_rad);
 /* Appends the sheet's meshes to out->meshes, as many as its vertices need; all have one lattice.
  * -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "format/scenery_code.h"
+#include "format/scenery_texture_code.h"
 
 enum { WORKERS_MAX = 16 };
 
@@ -174,6 +175,8 @@ static void do_job(struct job *job, const struct lattice *lattice)
 	case POOL_SCENERY:
 		rc = scenery_decode(&job->answer.scenery,
 				    (struct bytes){ job->object, job->object_bytes });
+		if (rc == 0)
+			rc = scenery_decode_textures(&job->answer.scenery);
 		break;
 	}
 	if (rc < 0)

@@ -131,8 +131,9 @@ void scene_reset_scenery(struct scene *scene);
 
 /* The memory in use out of the budgets. */
 struct scene_memory {
-	uint64_t texture_bytes;  /* of tiles and depth maps in use */
-	uint64_t geometry_bytes; /* of patches, on the GPU and in memory together */
+	uint64_t texture_bytes; /* of tiles and depth maps in use */
+	/* of patches, on the GPU and in memory together, and of scenery's pictures */
+	uint64_t geometry_bytes;
 };
 /* Writes the memory in use. */
 void scene_memory(const struct scene *scene, struct scene_memory *out);

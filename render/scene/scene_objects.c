@@ -398,7 +398,7 @@ void scene_memory(const struct scene *scene, struct scene_memory *out)
 
 	out->texture_bytes =
 		scene->tiles.slot_of.count * tile_bytes + scene->tiles.key_count * face_bytes;
-	out->geometry_bytes = scene->geometry.bytes;
+	out->geometry_bytes = scene->geometry.bytes + scene_scenery_bytes(scene);
 }
 
 void scene_unmix(const struct scene *scene, uint8_t *rgba, size_t pixel_count)

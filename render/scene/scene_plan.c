@@ -75,12 +75,21 @@ static struct cut_options cut_options_of(const struct scene *scene)
 				     .triangle_budget = scene->options.triangle_budget };
 }
 
+/* Pictures of scenery take from the patches' memory, but leave half of it. */
+static uint64_t geometry_budget(const struct scene *scene)
+{
+	const uint64_t all = scene->options.geometry_budget_bytes;
+	const uint64_t pictures = scene_scenery_bytes(scene);
+
+	return all - (pictures < all / 2 ? pictures : all / 2);
+}
+
 void scene_update_cut(struct scene *scene, float passed_ms)
 {
 	struct cut_options options = cut_options_of(scene);
 	struct geometry *geometry = &scene->geometry;
 	options.error_px *= scene->used.coarser;
-	geometry_evict(geometry, &scene->cut, scene->options.geometry_budget_bytes);
+	geometry_evict(geometry, &scene->cut, geometry_budget(scene));
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->changes;
 	dissolve_step(&scene->dissolve, geometry->loaded, passed_ms);

@@ -71,13 +71,15 @@ struct surface_fog scene_fog(const struct scene *scene)
 	return out;
 }
 
-/* Builds a program of those that are needed for it to appear, with its fog and without. */
+/* Uploads a picture or builds a program of those that are needed for it to appear, with its fog and
+ * without. */
 static void prepare(struct scene *scene, const struct surface_frame *frame)
 {
 	struct scene_scenery *own = &scene->scenery;
 	struct surface_frame foggy = *frame;
 
 	if ((!own->picture.around && scene_around_waits(scene)) ||
+	    !scenery_textures_next(&own->picture.textures, &own->content) ||
 	    !scenery_picture_prepare(&own->picture, &own->pose, frame))
 		return;
 	foggy.fog.share = 1;
@@ -97,6 +99,11 @@ void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 		own->lacks = !scenery_picture_draw(&own->picture, &own->pose, frame);
 	else
 		prepare(scene, frame);
+}
+
+uint64_t scene_scenery_bytes(const struct scene *scene)
+{
+	return scene->scenery.is_here ? scenery_textures_bytes(&scene->scenery.content) : 0;
 }
 
 bool scene_scenery_waits(const struct scene *scene)

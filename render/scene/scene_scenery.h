@@ -11,6 +11,8 @@ must_check int scene_put_scenery(struct scene *scene, struct scenery *scenery);
 bool scene_step_scenery(struct scene *scene, float passed_ms);
 /* Returns the fog that is seen now. */
 struct surface_fog scene_fog(const struct scene *scene);
+/* Returns the bytes of its pictures. */
+uint64_t scene_scenery_bytes(const struct scene *scene);
 /* Returns whether it waits for a program, or a face of what mirrors show, one of which each frame
  * makes: the picture has to be drawn again. */
 bool scene_scenery_waits(const struct scene *scene);

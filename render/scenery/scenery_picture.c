@@ -12,6 +12,7 @@
 int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery)
 {
 	struct scenery_offset end = { 0 };
+	int rc;
 
 	scenery_picture_drop(picture);
 	picture->offsets = calloc((size_t)scenery->mesh_count + 1, sizeof(*picture->offsets));
@@ -40,7 +41,8 @@ int scenery_picture_load(struct scenery_picture *picture, const struct scenery *
 				(GLsizeiptr)(mesh->triangle_count * sizeof(*mesh->triangles)),
 				mesh->triangles);
 	}
-	return gl_check("uploading scenery");
+	rc = gl_check("uploading scenery");
+	return rc < 0 ? rc : scenery_textures_load(&picture->textures, scenery);
 }
 
 int scenery_cube_create(GLuint *out, const struct appearance_cube *faces)
@@ -75,6 +77,7 @@ void scenery_picture_drop(struct scenery_picture *picture)
 		*buffers[i] = 0;
 	}
 	scenery_picture_surround(picture, 0);
+	scenery_textures_finish(&picture->textures);
 	free(picture->offsets);
 	free(picture->triangles);
 	picture->offsets = NULL;
@@ -220,6 +223,14 @@ struct drawing {
 	GLuint used; /* program; 0: none yet */
 };
 
+static bool has_texture(const struct drawing *drawing, const struct scenery_material *material)
+{
+	const struct scenery_textures *textures = &drawing->picture->textures;
+
+	return material->texture > 0 && material->texture <= textures->count &&
+	       textures->names[material->texture - 1];
+}
+
 static unsigned features_of(const struct drawing *drawing, uint32_t mesh,
 			    struct dissolve_range range)
 {
@@ -233,6 +244,7 @@ static unsigned features_of(const struct drawing *drawing, uint32_t mesh,
 	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u) |
 	       (material.relief_m > 0 ? (unsigned)SCENERY_RELIEF : 0u) |
 	       (material.mirror > 0 && drawing->picture->around ? (unsigned)SCENERY_MIRROR : 0u) |
+	       (has_texture(drawing, &material) ? (unsigned)SCENERY_TEXTURE : 0u) |
 	       (unsigned)SCENERY_SUBSTANCE * material.substance;
 }
 
@@ -271,6 +283,13 @@ static void begin_mesh_with(struct drawing *drawing, uint32_t mesh, const struct
 			      (void *)(first + offsetof(struct scenery_vertex, normal)));
 	glVertexAttribPointer(2, 3, GL_UNSIGNED_BYTE, GL_TRUE, stride,
 			      (void *)(first + offsetof(struct scenery_vertex, rgb)));
+	if (p->uv < 0) {
+		glDisableVertexAttribArray(3);
+		return;
+	}
+	glUniform4f(p->uv, of->uv_origin[0], of->uv_origin[1], of->uv_step[0], of->uv_step[1]);
+	scenery_textures_bind(&drawing->picture->textures, scenery, mesh);
+	glBindBuffer(GL_ARRAY_BUFFER, drawing->picture->vertices);
 }
 
 /* The same with the program of its material. Returns false where there is none to draw with. */
@@ -390,6 +409,7 @@ bool scenery_picture_draw(struct scenery_picture *picture, const struct pose *po
 				       scenery->meshes[i].triangle_count);
 	draw_ordered(&drawing);
 	glDisable(GL_CULL_FACE);
+	glDisableVertexAttribArray(3);
 	return !picture->programs.lacks;
 }
 
@@ -404,6 +424,7 @@ static void draw_unseen(struct drawing *drawing, uint32_t mesh, const struct sce
 	begin_mesh_with(drawing, mesh, p);
 	glUniform2f(p->range, 2, 2);
 	draw_triangles(drawing->picture->offsets[mesh].index_bytes, 1);
+	glDisableVertexAttribArray(3);
 	if (blends)
 		end_blending();
 	glDisable(GL_CULL_FACE);

@@ -7,6 +7,7 @@
 #include "render/scenery/pose.h"
 #include "render/scenery/scenery_order.h"
 #include "render/scenery/scenery_program.h"
+#include "render/scenery/scenery_textures.h"
 
 /* Where a mesh is in the buffers. */
 struct scenery_offset {
@@ -22,10 +23,12 @@ struct scenery_picture {
 	uint16_t (*triangles)[3];       /* the same before they are uploaded; owned */
 	struct scenery_order order;     /* of the last frame */
 	struct scenery_offset *offsets; /* of each mesh; owned */
-	GLuint around;                  /* cube map of what mirrors show; 0: nothing yet. Owned */
+	struct scenery_textures textures;
+	GLuint around; /* cube map of what mirrors show; 0: nothing yet. Owned */
 };
 
-/* Uploads the meshes in place of any before. -ENOMEM, or as gl_check. */
+/* Uploads the meshes in place of any before; their pictures are uploaded by scenery_textures_next.
+ * -ENOMEM, or as gl_check. */
 must_check int scenery_picture_load(struct scenery_picture *picture, const struct scenery *scenery);
 /* Makes a cube map with linear filters of six faces as geometry/appearance.h has them; NULL faces
  * are undefined. The caller deletes *out, whatever is returned. Errors as gl_check. */

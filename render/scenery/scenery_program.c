@@ -93,7 +93,14 @@ static const char vertex[] =
 	"uniform mat4 u_solid;\n"
 	"varying vec3 v_solid;\n"
 	"#endif\n"
+	"#ifdef TEXTURE\n"
+	"uniform vec4 u_uv;\n" /* origin, step */
+	"varying vec2 v_uv;\n"
+	"#endif\n"
 	"void main() {\n"
+	"#ifdef TEXTURE\n"
+	"	v_uv = u_uv.xy + u_uv.zw * a_base.xy;\n"
+	"#endif\n"
 	"#if defined(SOLID) || defined(RELIEF)\n"
 	"	v_solid = (u_solid * vec4(a_position, 1.0)).xyz;\n"
 	"#endif\n"
@@ -122,8 +129,15 @@ static const char fragment[] =
 	"uniform vec4 u_light;\n"
 	"varying vec3 v_normal, v_place;\n"
 	"#endif\n"
+	"#ifdef TEXTURE\n"
+	"uniform sampler2D u_texture;\n"
+	"varying vec2 v_uv;\n"
+	"#endif\n"
 	"void main() {\n"
 	"	vec3 colour = v_colour.rgb;\n"
+	"#ifdef TEXTURE\n"
+	"	colour *= texture2D(u_texture, v_uv).rgb;\n"
+	"#endif\n"
 	"#ifdef BY_PIXEL\n"
 	"	vec3 n = normalize(gl_FrontFacing ? v_normal : -v_normal);\n"
 	"	colour = shaded(colour, n, v_place, u_light);\n"
@@ -151,6 +165,7 @@ static void find_uniforms(struct scenery_program *p)
 	p->relief = glGetUniformLocation(p->program, "u_relief");
 	p->mirror = glGetUniformLocation(p->program, "u_mirror");
 	p->pixel = glGetUniformLocation(p->program, "u_pixel");
+	p->uv = glGetUniformLocation(p->program, "u_uv");
 	surface_find_tools(&p->tools, p->program);
 }
 
@@ -164,11 +179,12 @@ static void define(char *out, size_t bytes, unsigned features, unsigned cut)
 	if (kind > 0)
 		snprintf(solid, sizeof(solid), "#define SOLID %s_colour\n", substance_names[kind]);
 	surface_define(tools, features % SURFACE_TOOLS, cut);
-	snprintf(out, bytes, "%s%s%s%s%s%s", tools,
+	snprintf(out, bytes, "%s%s%s%s%s%s%s", tools,
 		 features & SCENERY_BY_PIXEL ? "#define BY_PIXEL\n" : "",
 		 features & SCENERY_GLOSSY ? "#define GLOSSY\n" : "",
 		 features & SCENERY_RELIEF ? "#define RELIEF\n" : "",
-		 features & SCENERY_MIRROR ? "#define MIRROR\n" : "", solid);
+		 features & SCENERY_MIRROR ? "#define MIRROR\n" : "",
+		 features & SCENERY_TEXTURE ? "#define TEXTURE\n" : "", solid);
 }
 
 /* Returns a text if it is needed. */
@@ -220,10 +236,11 @@ static int build(struct scenery_program *p, unsigned cut)
 	if (rc < 0)
 		return rc;
 	find_uniforms(p);
-	if (features & SCENERY_MIRROR) {
-		glUseProgram(p->program);
+	glUseProgram(p->program);
+	if (features & SCENERY_MIRROR)
 		glUniform1i(glGetUniformLocation(p->program, "u_around"), 0);
-	}
+	if (features & SCENERY_TEXTURE)
+		glUniform1i(glGetUniformLocation(p->program, "u_texture"), 1);
 	return 0;
 }
 

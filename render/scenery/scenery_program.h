@@ -14,7 +14,8 @@ enum {
 	SCENERY_GLOSSY = 4 * SURFACE_TOOLS,   /* has a highlight, or shines by itself */
 	SCENERY_RELIEF = 8 * SURFACE_TOOLS,
 	SCENERY_MIRROR = 16 * SURFACE_TOOLS,
-	SCENERY_SUBSTANCE = 32 * SURFACE_TOOLS, /* times enum substance_kind */
+	SCENERY_TEXTURE = 32 * SURFACE_TOOLS,
+	SCENERY_SUBSTANCE = 64 * SURFACE_TOOLS, /* times enum substance_kind */
 	SCENERY_FEATURES = SCENERY_SUBSTANCE * SCENERY_SUBSTANCES,
 };
 
@@ -22,7 +23,7 @@ struct scenery_program {
 	unsigned features;
 	GLuint program; /* 0: the driver refused it */
 	GLint clip, model, normal, sides, sun[2], range, specular, emissive, opacity;
-	GLint solid, slope, tint, relief, mirror, pixel;
+	GLint solid, slope, tint, relief, mirror, pixel, uv;
 	struct surface_tool_uniforms tools;
 };
 

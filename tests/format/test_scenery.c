@@ -3,7 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "format/picture.h"
 #include "format/scenery_code.h"
+#include "format/scenery_texture_code.h"
 #include "tests/check.h"
 #include "tests/format/little_scenery.h"
 
@@ -86,6 +88,94 @@ static void shapes_and_drags_come_back_too(void **state)
 	CHECK(scenery_sets(&back, 1, SCENERY_SHAPE) && !scenery_sets(&back, 1, SCENERY_COLOUR));
 	scenery_finish(&back);
 	buffer_finish(&bytes);
+}
+
+/* Puts a picture of 2 x 1 pixels on the door. jpeg and uvs are the caller's. */
+static void add_picture(struct little_scenery *s, struct scenery_texture *texture,
+			uint16_t (*uvs)[2], struct buffer *jpeg)
+{
+	static uint8_t pixels[8] = { 250, 250, 250, 255, 10, 10, 10, 255 };
+
+	buffer_init(jpeg, 1 << 16);
+	CHECK(picture_encode_jpeg(jpeg, &(struct picture){ 2, 1, pixels }, 95) == 0);
+	*texture = (struct scenery_texture){ .width = 2,
+					     .height = 1,
+					     .repeats = true,
+					     .jpeg = jpeg->data,
+					     .jpeg_bytes = (uint32_t)jpeg->size };
+	s->scenery.textures = texture;
+	s->scenery.texture_count = 1;
+	s->material.by_pixel = true;
+	s->material.texture = 1;
+	for (int m = 0; m < 2; m++) {
+		s->meshes[m].uvs = uvs;
+		s->meshes[m].uv_step[0] = 0.25f;
+		s->meshes[m].uv_origin[1] = -3;
+	}
+}
+
+static void pictures_come_back_too(void **state)
+{
+	uint16_t uvs[4][2] = { { 1, 2 }, { 3, 4 }, { 5, 6 }, { 7, 65535 } };
+	struct scenery_texture texture;
+	struct buffer object, jpeg;
+	struct little_scenery s;
+	struct scenery out;
+
+	(void)state;
+	little_scenery_init(&s);
+	buffer_init(&object, 1 << 20);
+	CHECK(scenery_encode(&object, &s.scenery) == 0);
+	CHECK(object.data[4] == 3); /* without pictures, what an older terminal reads */
+	add_picture(&s, &texture, uvs, &jpeg);
+	buffer_clear(&object);
+	CHECK(scenery_encode(&object, &s.scenery) == 0 && object.data[4] == 4);
+	CHECK(scenery_decode(&out, buffer_bytes(&object)) == 0);
+	CHECK(out.texture_count == 1 && out.textures[0].repeats && out.materials[0].texture == 1);
+	CHECK(memcmp(out.meshes[1].uvs, uvs, sizeof(uvs)) == 0);
+	CHECK(out.meshes[0].uv_step[0] == 0.25f && out.meshes[0].uv_origin[1] == -3);
+	CHECK(scenery_decode_textures(&out) == 0);
+	CHECK(out.textures[0].rgba[0] > 200 && out.textures[0].rgba[4] < 50);
+	scenery_finish(&out);
+	for (size_t n = 0; n < object.size; n++)
+		CHECK(scenery_decode(&out, (struct bytes){ object.data, n }) == -EBADMSG);
+	/* a picture of another size, and one that is none, are found when they are decoded */
+	texture.height = 2;
+	buffer_clear(&object);
+	CHECK(scenery_encode(&object, &s.scenery) == 0);
+	CHECK(scenery_decode(&out, buffer_bytes(&object)) == 0);
+	CHECK(scenery_decode_textures(&out) == -EBADMSG);
+	out.textures[0].jpeg[0] = 0;
+	CHECK(scenery_decode_textures(&out) == -EBADMSG);
+	scenery_finish(&out);
+	buffer_finish(&object);
+	buffer_finish(&jpeg);
+}
+
+static void pictures_that_break_a_rule_are_not_written(void **state)
+{
+	uint16_t uvs[4][2] = { { 0 } };
+
+	(void)state;
+	for (int i = 0; i < 8; i++) {
+		struct scenery_texture texture;
+		struct buffer object, jpeg;
+		struct little_scenery s;
+
+		little_scenery_init(&s);
+		add_picture(&s, &texture, uvs, &jpeg);
+		texture.width = i == 1 ? 3 : i == 2 ? 4096 : i == 3 ? 0 : 2;
+		s.material.texture = i == 4 ? 2 : 1;
+		s.material.by_pixel = i != 5;
+		if (i == 6)
+			s.meshes[1].uvs = NULL;
+		if (i == 7)
+			s.meshes[0].uv_step[1] = NAN;
+		buffer_init(&object, 1 << 20);
+		CHECK(scenery_encode(&object, &s.scenery) == (i == 0 ? 0 : -EINVAL));
+		buffer_finish(&object);
+		buffer_finish(&jpeg);
+	}
 }
 
 static void refuses_every_truncation_and_survives_every_bit(void **state)
@@ -266,6 +356,8 @@ int main(void)
 		cmocka_unit_test(reads_what_was_published_before_there_were_shapes),
 		cmocka_unit_test(reads_what_was_published_before_there_were_materials),
 		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
+		cmocka_unit_test(pictures_come_back_too),
+		cmocka_unit_test(pictures_that_break_a_rule_are_not_written),
 		cmocka_unit_test(what_breaks_a_rule_is_not_written),
 	};
 

@@ -1,5 +1,6 @@
 /* Any bytes as scenery: refused, or scenery that encodes and decodes to itself. */
 #include "format/scenery_code.h"
+#include "format/scenery_texture_code.h"
 
 #include <stdlib.h>
 
@@ -14,6 +15,8 @@ static void decode(const uint8_t *data, size_t size)
 
 	if (scenery_decode(&scenery, (struct bytes){ data, size }) < 0)
 		return;
+	if (scenery_decode_textures(&scenery) < 0 && scenery.texture_count == 0)
+		abort();
 	buffer_init(&once, 64 << 20);
 	buffer_init(&twice, 64 << 20);
 	if (scenery_encode(&once, &scenery) < 0 || scenery_decode(&back, buffer_bytes(&once)) < 0 ||
@@ -37,7 +40,7 @@ static void pack_and_decode(const uint8_t *data, size_t size)
 	reader_init(&in, (struct bytes){ data + 2, size - 2 });
 	buffer_init(&object, REPACK_BYTES_MAX);
 	buffer_put(&object, "GPsy", 4);
-	buffer_put_u8(&object, data[1] & 1 ? 1 : data[1] & 2 ? 3 : 2);
+	buffer_put_u8(&object, data[1] & 1 ? 1 : data[1] & 4 ? 4 : data[1] & 2 ? 3 : 2);
 	buffer_put_u32(&object, (uint32_t)reader_left(&in));
 	repack_put(&object, &in, reader_left(&in));
 	decode(object.data, object.size);

@@ -337,8 +337,28 @@ static void a_mirror_shows_scan_and_sky(void **state)
 	CHECK(!is_wood(0.2f, -6, 0.1f));
 }
 
-/* As if it had just come, with wood that has relief on the door and a glossy mirror in the second
- * layer. */
+/* Puts a red picture on the door; another one is nowhere. */
+static void add_pictures(struct scenery *s)
+{
+	s->texture_count = 2;
+	free(s->textures);
+	s->textures = calloc(2, sizeof(*s->textures));
+	s->meshes[0].uvs = calloc(s->meshes[0].vertex_count, sizeof(*s->meshes[0].uvs));
+	CHECK(s->textures && s->meshes[0].uvs);
+	s->materials[0].texture = 1;
+	for (int i = 0; i < 2; i++) {
+		struct scenery_texture *texture = &s->textures[i];
+
+		*texture =
+			(struct scenery_texture){ .width = 8, .height = 8, .rgba = calloc(64, 4) };
+		CHECK(texture->rgba);
+		for (int k = 0; k < 64; k++)
+			texture->rgba[4 * k] = 255;
+	}
+}
+
+/* As if it had just come, with a picture on wood that has relief on the door, and a glossy mirror
+ * in the second layer. */
 static void come_again(void)
 {
 	struct scene_scenery *own = &stage.scene->scenery;
@@ -355,26 +375,30 @@ static void come_again(void)
 						     .grain = { 0, 0, 1 } };
 	s->material_count = 2; /* the decoder leaves room for one more */
 	s->meshes[1].material = 1;
+	add_pictures(s);
+	CHECK(scenery_textures_load(&own->picture.textures, s) == 0);
 	scenery_programs_finish(&own->picture.programs);
 	pose_finish(&own->pose);
 	CHECK(pose_init(&own->pose, s) == 0);
 	own->is_ready = false;
 }
 
-/* Draws until the picture has settled; no frame may build two programs or draw two faces of what
- * mirrors show. Returns how many programs there are then. */
+/* Draws until the picture has settled; no frame may build two programs, upload two pictures, or
+ * draw two faces of what mirrors show. Returns how many programs there are then. */
 static uint32_t count_programs(void)
 {
 	const struct scene_scenery *own = &stage.scene->scenery;
 
 	for (int frames = 0; frames < FRAMES_MAX; frames++) {
 		const uint32_t programs = own->picture.programs.count;
+		const uint32_t textures = own->picture.textures.count;
 		const int face = own->around.face;
 
 		gl_target_bind(&stage.target);
 		scene_draw(stage.scene, &eye, NULL, &stage.frame);
 		little_release_serve(release, stage.scene, 16);
 		CHECK(own->picture.programs.count - programs <= 1);
+		CHECK(own->picture.textures.count - textures <= 1);
 		CHECK(own->around.face == (face + 1) % 6 || own->around.face == face);
 		/* what appears, and what mirrors show, is complete */
 		CHECK(own->is_ready || own->pose.appeared == 0);
@@ -389,6 +413,9 @@ static uint32_t count_programs(void)
 static void a_frame_builds_one_program_at_most(void **state)
 {
 	struct scene_tools tools = { .rake = { .on = true } };
+	struct scene_memory memory;
+	const uint8_t *pixel;
+	float at[2];
 
 	(void)state;
 	settle("plain");
@@ -397,6 +424,11 @@ static void a_frame_builds_one_program_at_most(void **state)
 	/* of each material the one that dissolves, before it appears, and the one that does not */
 	assert_int_equal(count_programs(), 4);
 	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+	project(1.5f, -6, 1.5f, at);
+	pixel = &stage.seen[4 * ((int)at[1] * WIDTH + (int)at[0])];
+	CHECK(pixel[0] > 30 && pixel[1] == 0 && pixel[2] == 0);
+	scene_memory(stage.scene, &memory);
+	CHECK(memory.geometry_bytes == stage.scene->geometry.bytes + 2 * (uint64_t)64 * 4 * 4 / 3);
 	/* under a tool, one that serves both until each has its own */
 	rake_place(&tools.rake, -0.6f, 0.5f);
 	scene_use(stage.scene, &tools);

@@ -167,6 +167,46 @@ static inline struct scenery_mesh *stage_pane(struct scenery *s,
 	return mesh;
 }
 
+/* Puts a picture of a side of 2^n pixels on a pane: stripes and discs in three colours, seen
+ * `times` over. */
+static inline void stage_paint(struct scenery *s, struct scenery_mesh *mesh, int side, float times)
+{
+	struct scenery_texture *texture;
+
+	s->textures = calloc(1, sizeof(*s->textures));
+	mesh->uvs = calloc(mesh->vertex_count, sizeof(*mesh->uvs));
+	CHECK(s->textures && mesh->uvs);
+	texture = s->textures;
+	*texture = (struct scenery_texture){ .width = (uint16_t)side,
+					     .height = (uint16_t)side,
+					     .repeats = times > 1,
+					     .jpeg_bytes = 1,
+					     .rgba = malloc((size_t)(4 * side * side)) };
+	CHECK(texture->rgba);
+	s->texture_count = 1;
+	s->materials[mesh->material].texture = 1;
+	for (int i = 0; i < side * side; i++) {
+		const float x = (float)(i % side) / (float)side,
+			    y = (float)(i / side) / (float)side;
+		const bool is_disc = hypotf(x - 0.35f, y - 0.4f) < 0.2f;
+
+		texture->rgba[4 * i] = is_disc ? 220 : (uint8_t)(120 + 60 * sinf(40 * x));
+		texture->rgba[4 * i + 1] = y > 0.75f ? 200 : 90;
+		texture->rgba[4 * i + 2] = (uint8_t)(255 * y);
+		texture->rgba[4 * i + 3] = 255;
+	}
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		const uint16_t *place = mesh->vertices[v].place;
+
+		mesh->uvs[v][0] = place[0];
+		mesh->uvs[v][1] = (uint16_t)(STAGE_LATTICE - place[2]);
+	}
+	for (int k = 0; k < 2; k++) {
+		mesh->uv_step[k] = times / STAGE_LATTICE;
+		mesh->uv_origin[k] = 0.05f;
+	}
+}
+
 /* A lit model under a sun from the upper left of an eye that looks along y. */
 static inline struct root_page stage_root(void)
 {

@@ -20,6 +20,8 @@ enum { SOFTWARE_HITS_MAX = 64 };
 /* A triangle in metres from the eye. */
 struct software_triangle {
 	const struct scenery_material *material;
+	const struct scenery_texture *texture; /* NULL: none */
+	float uvs[3][3];                       /* two each */
 	struct appearance_solid solid;
 	float corners[3][3], normals[3][3], colours[3][3], places[3][3]; /* places: in the node */
 };
@@ -65,12 +67,18 @@ static inline void software_add(struct software_picture *p, const struct pose *p
 	const float *m = pose->nodes[mesh->node].matrix;
 
 	out->material = &p->scenery->materials[mesh->material];
+	if (out->material->texture)
+		out->texture = &p->scenery->textures[out->material->texture - 1];
 	appearance_solid_init(&out->solid, out->material, m);
 	for (int k = 0; k < 3; k++) {
 		const struct scenery_vertex *v = &mesh->vertices[mesh->triangles[triangle][k]];
 		struct appearance_place place = { .footprint_m = 0 };
 		float normal[3], *at = out->places[k], *n = place.normal, *surface = place.surface;
 
+		for (int i = 0; i < 2 && out->texture; i++)
+			out->uvs[k][i] =
+				mesh->uv_origin[i] +
+				mesh->uv_step[i] * mesh->uvs[mesh->triangles[triangle][k]][i];
 		for (int i = 0; i < 3; i++) {
 			at[i] = mesh->origin_m[i] + mesh->step_m * v->place[i];
 			surface[i] = (float)v->rgb[i] / 255;
@@ -143,6 +151,78 @@ static inline void software_mix(float out[3], const float of[3][3], const float 
 		out[k] = of[0][k] * share[0] + of[1][k] * share[1] + of[2][k] * share[2];
 }
 
+/* A pixel of a picture that was halved `level` times: the mean of those that it covers. */
+static inline float software_texel(const struct scenery_texture *t, int level, int x, int y, int k)
+{
+	const int width = t->width >> level > 1 ? t->width >> level : 1;
+	const int height = t->height >> level > 1 ? t->height >> level : 1;
+	const int across = t->width / width, down = t->height / height;
+	float sum = 0;
+
+	if (t->repeats) {
+		x = (x % width + width) % width;
+		y = (y % height + height) % height;
+	}
+	x = x < 0 ? 0 : x >= width ? width - 1 : x;
+	y = y < 0 ? 0 : y >= height ? height - 1 : y;
+	for (int i = 0; i < across * down; i++)
+		sum += t->rgba[4 * ((y * down + i / across) * t->width + x * across + i % across) +
+			       k];
+	return sum / (float)(across * down * 255);
+}
+
+static inline void software_bilinear(float rgb[3], const struct scenery_texture *t, int level,
+				     const float uv[2])
+{
+	const int width = t->width >> level > 1 ? t->width >> level : 1;
+	const int height = t->height >> level > 1 ? t->height >> level : 1;
+	const float x = uv[0] * (float)width - 0.5f, y = uv[1] * (float)height - 0.5f;
+	const int left = (int)floorf(x), top = (int)floorf(y);
+	const float right = x - (float)left, low = y - (float)top;
+
+	for (int k = 0; k < 3; k++) {
+		const float above = software_texel(t, level, left, top, k) * (1 - right) +
+				    software_texel(t, level, left + 1, top, k) * right;
+		const float below = software_texel(t, level, left, top + 1, k) * (1 - right) +
+				    software_texel(t, level, left + 1, top + 1, k) * right;
+
+		rgb[k] = above * (1 - low) + below * low;
+	}
+}
+
+/* The picture where a ray meets a triangle: trilinear, by how far the places of the next pixels are
+ * (OpenGL ES 2.0, 3.7.7). */
+static inline void software_paint(float surface[3], const struct software_picture *p,
+				  const struct software_hit *hit, const float direction[3])
+{
+	const struct scenery_texture *t = hit->of->texture;
+	const float forward = vec_dot(direction, p->view->forward);
+	const int levels = (int)log2f((float)(t->width > t->height ? t->width : t->height));
+	float uv[3], most = 0, lod, coarse[3], fine[3];
+
+	software_mix(uv, hit->of->uvs, hit->share);
+	for (int way = 0; way < 2; way++) {
+		struct software_hit beside;
+		float to[3], there[3];
+
+		vec_add_scaled(to, direction,
+			       forward * 2 *
+				       (way == 0 ? p->view->tan_x / (float)p->view->width_px
+						 : p->view->tan_y / (float)p->view->height_px),
+			       way == 0 ? p->view->right : p->view->up);
+		(void)software_meets(&beside, hit->of, to);
+		software_mix(there, hit->of->uvs, beside.share);
+		most = vec_most(most, fabsf(there[0] - uv[0]) * t->width);
+		most = vec_most(most, fabsf(there[1] - uv[1]) * t->height);
+	}
+	lod = vec_least(vec_most(log2f(most), 0), (float)levels);
+	software_bilinear(fine, t, (int)lod, uv);
+	software_bilinear(coarse, t, (int)lod < levels ? (int)lod + 1 : levels, uv);
+	vec_mix(fine, fine, coarse, lod - floorf(lod));
+	for (int k = 0; k < 3; k++)
+		surface[k] *= fine[k];
+}
+
 static inline void software_shade(float rgb[3], const struct software_picture *p,
 				  const struct software_hit *hit, const float direction[3])
 {
@@ -152,6 +232,8 @@ static inline void software_shade(float rgb[3], const struct software_picture *p
 	float colour[3];
 
 	software_mix(place.surface, t->colours, hit->share);
+	if (t->texture)
+		software_paint(place.surface, p, hit, direction);
 	vec_copy(rgb, place.surface);
 	if (t->material->by_pixel) {
 		software_mix(place.normal, t->normals, hit->share);

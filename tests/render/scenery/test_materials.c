@@ -183,6 +183,29 @@ static void make_rough_gold(struct scenery *s)
 	stage_ball(s, &gold, middle, 1, 16, 1, false, (const uint8_t[3]){ 212, 160, 50 });
 }
 
+/* Near and far: enlarged in front, halved again and again behind. */
+static void make_painted(struct scenery *s)
+{
+	const struct scenery_material board = {
+		.opacity = 1, .by_pixel = true, .specular = { 60, 60, 60 }, .shininess = 20
+	};
+	struct scenery_mesh *mesh =
+		stage_pane(s, &board, (float[3]){ 0, 1, 0.1f }, (float[3]){ 2, -1.6f, 0 },
+			   (float[3]){ 0, 0, 1.6f }, 4, white);
+
+	stage_paint(s, mesh, 64, 1);
+}
+
+static void make_tiled(struct scenery *s)
+{
+	const struct scenery_material tiles = { .opacity = 1, .by_pixel = true };
+	struct scenery_mesh *mesh =
+		stage_pane(s, &tiles, (float[3]){ 0, 2.5f, 0.2f }, (float[3]){ 3, -6, 0 },
+			   (float[3]){ 0, 0, 1.8f }, 4, white);
+
+	stage_paint(s, mesh, 128, 7);
+}
+
 static const struct material_case {
 	const char *name;
 	void (*make)(struct scenery *s);
@@ -203,6 +226,8 @@ static const struct material_case {
 	{ "hewn stone", make_hewn, 2.5f },
 	{ "environment", make_mirror, 1 },
 	{ "environment, relief, highlight", make_rough_gold, 1 },
+	{ "picture", make_painted, 1 },
+	{ "picture that repeats", make_tiled, 1 },
 };
 
 enum { CASES = sizeof(cases) / sizeof(*cases), ROWS = (CASES + ACROSS - 1) / ACROSS };
@@ -273,7 +298,7 @@ static double psnr(const uint8_t *a, const uint8_t *b)
 	return 10 * log10(255.0 * 255.0 * 3 * PIXELS / (sum + 1e-9));
 }
 
-static void draw_gles(const struct gl_target *target, const struct pose *pose,
+static void draw_gles(const struct gl_target *target, const struct pose *pose, struct scenery *s,
 		      const struct surface_frame *frame, const struct appearance_cube *around,
 		      uint8_t *rgba)
 {
@@ -284,6 +309,8 @@ static void draw_gles(const struct gl_target *target, const struct pose *pose,
 	CHECK(scenery_picture_load(&picture, pose->scenery) == 0);
 	CHECK(scenery_cube_create(&cube, around) == 0);
 	scenery_picture_surround(&picture, cube);
+	while (!scenery_textures_next(&picture.textures, s))
+		continue;
 	gl_target_bind(target);
 	glEnable(GL_DEPTH_TEST);
 	glDepthFunc(GL_LESS);
@@ -325,11 +352,11 @@ static double compare(const struct gl_target *target, int number)
 	camera = eye;
 	vec_scale(camera.eye_m, 1 / cases[number].closer, eye.eye_m);
 	view_from_camera(&view, &camera);
-	draw_gles(target, &pose,
-		  &(struct surface_frame){ .view = &view, .root = &root, .fog = fog_of(&s) },
-		  &around, drawn);
 	software_init(&software, &pose, &view, &root, &around);
 	software_draw(&software, truth);
+	draw_gles(target, &pose, &s,
+		  &(struct surface_frame){ .view = &view, .root = &root, .fog = fog_of(&s) },
+		  &around, drawn);
 	keep(number, 0, drawn);
 	keep(number, 1, truth);
 	software_finish(&software);

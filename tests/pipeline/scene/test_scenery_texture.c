@@ -1,6 +1,7 @@
-/* Pictures on surfaces of scenery: as colours of corners, within a budget, or a warning. */
+/* Pictures on surfaces of scenery: as textures, within a budget, or a warning. */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +9,9 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "format/scenery_texture_code.h"
 #include "pipeline/scene/gltf_scenery.h"
+#include "pipeline/scene/scenery_texture.h"
 #include "pipeline/scene/vrml_scenery.h"
 #include "tests/check.h"
 
@@ -62,91 +65,167 @@ static void make_square(struct soup_triangle out[2])
 		}
 }
 
-/* The colour of the corner that is nearest to a place, of all meshes. */
-static const uint8_t *colour_at(const struct scenery *s, float x, float y)
+/* Finds the triangle of a mesh that lies over a place in x and y; shares of its corners, or false.
+ */
+static bool find_triangle(const struct scenery_mesh *mesh, float x, float y, const uint16_t **out,
+			  float shares[3])
 {
-	const uint8_t *found = NULL;
-	float nearest = 1e9f;
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		float at[3][2], area;
 
-	for (uint32_t m = 0; m < s->mesh_count; m++)
-		for (uint32_t v = 0; v < s->meshes[m].vertex_count; v++) {
-			const struct scenery_mesh *mesh = &s->meshes[m];
-			const float dx = mesh->origin_m[0] - x +
-					 mesh->step_m * (float)mesh->vertices[v].place[0];
-			const float dy = mesh->origin_m[1] - y +
-					 mesh->step_m * (float)mesh->vertices[v].place[1];
+		for (int k = 0; k < 3; k++)
+			for (int i = 0; i < 2; i++)
+				at[k][i] =
+					mesh->origin_m[i] +
+					mesh->step_m * (float)mesh->vertices[mesh->triangles[t][k]]
+							       .place[i];
+		area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
+		       (at[1][1] - at[0][1]) * (at[2][0] - at[0][0]);
+		for (int k = 0; k < 3; k++) {
+			const float *a = at[(k + 1) % 3], *b = at[(k + 2) % 3];
 
-			if (dx * dx + dy * dy < nearest) {
-				nearest = dx * dx + dy * dy;
-				found = mesh->vertices[v].rgb;
-			}
+			shares[k] =
+				((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area;
 		}
-	return found;
+		*out = mesh->triangles[t];
+		if (shares[0] >= 0 && shares[1] >= 0 && shares[2] >= 0)
+			return true;
+	}
+	return false;
 }
 
-static bool is_colour(const uint8_t *rgb, int strongest)
+/* The colour at a place of the first mesh: that of its corners times its picture. */
+static void colour_at(uint8_t rgb[3], const struct scenery *s, float x, float y)
 {
+	const struct scenery_mesh *mesh = &s->meshes[0];
+	const uint16_t number = s->materials[mesh->material].texture;
+	const struct scenery_texture *texture = number ? &s->textures[number - 1] : NULL;
+	const uint16_t *corners;
+	float shares[3], at[2];
+	int pixel[2];
+
+	CHECK(find_triangle(mesh, x, y, &corners, shares));
+	memcpy(rgb, mesh->vertices[corners[0]].rgb, 3);
+	if (!texture)
+		return;
+	for (int i = 0; i < 2; i++) {
+		const int px = i == 0 ? texture->width : texture->height;
+
+		at[i] = mesh->uv_origin[i];
+		for (int k = 0; k < 3; k++)
+			at[i] += mesh->uv_step[i] * shares[k] * (float)mesh->uvs[corners[k]][i];
+		pixel[i] = (int)((at[i] - floorf(at[i])) * (float)px);
+	}
 	for (int k = 0; k < 3; k++)
-		if (k == strongest ? rgb[k] < 250 : rgb[k] > 5)
+		rgb[k] = (uint8_t)(rgb[k] *
+				   texture->rgba[4 * (pixel[1] * texture->width + pixel[0]) + k] /
+				   255);
+}
+
+static bool is_colour(const struct scenery *s, float x, float y, int strongest)
+{
+	uint8_t rgb[3];
+
+	colour_at(rgb, s, x, y);
+	for (int k = 0; k < 3; k++)
+		if (k == strongest ? rgb[k] < 240 : rgb[k] > 20)
 			return false;
 	return true;
 }
 
-static bool shows_the_picture(const struct scenery *s)
+static bool shows_the_picture(struct scenery *s)
 {
-	return is_colour(colour_at(s, 0.2f, 0.8f), 0) && is_colour(colour_at(s, 0.8f, 0.8f), 0) &&
-	       is_colour(colour_at(s, 0.2f, 0.2f), 1) && is_colour(colour_at(s, 0.8f, 0.2f), 2);
+	CHECK(scenery_decode_textures(s) == 0);
+	return is_colour(s, 0.2f, 0.8f, 0) && is_colour(s, 0.8f, 0.8f, 0) &&
+	       is_colour(s, 0.2f, 0.2f, 1) && is_colour(s, 0.8f, 0.2f, 2);
 }
 
-static void a_square_is_divided_until_its_picture_shows(void **state)
+static void a_picture_is_kept_once_with_sides_that_are_powers_of_two(void **state)
 {
-	struct picture picture = make_picture();
+	struct picture picture = { 48, 150, calloc(48 * 150, 4) };
+	struct scenery_material glass = scenery_plain;
 	struct scenery_maker maker = { 0 };
 	struct soup_triangle square[2];
 	struct scenery s;
 	uint32_t node;
 
 	(void)state;
+	glass.opacity = 0.5f;
 	make_square(square);
 	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	for (int i = 0; i < 3; i++)
+		CHECK(scenery_add_surface(&maker, node, i == 2 ? &glass : &scenery_plain, square, 2,
+					  0, &picture) == 0);
+	/* where it repeats it is another one, and so are other pixels */
+	square[0].corners[1].uv[0] = 2.5f;
+	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
+	picture.rgba[0] = 9;
 	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
 	CHECK(scenery_maker_end(&maker, &s) == 0 && scenery_is_sane(&s));
-	/* Its diagonal has 90 pixels, and pieces of less than 1.5 show nothing more. */
-	CHECK(scenery_triangles(&s) == 2 * 60 * 60);
-	CHECK(shows_the_picture(&s));
-	/* It is still one flat square: neighbours share corners, all with one normal. */
-	CHECK(s.meshes[0].vertex_count == 61 * 61);
-	for (uint32_t v = 1; v < s.meshes[0].vertex_count; v++)
-		CHECK(memcmp(s.meshes[0].vertices[v].normal, s.meshes[0].vertices[0].normal, 2) ==
-		      0);
+	CHECK(s.texture_count == 3 && s.material_count == 4 && scenery_triangles(&s) == 10);
+	for (uint32_t i = 0; i < 3; i++)
+		CHECK(s.textures[i].width == 64 && s.textures[i].height == 128 &&
+		      s.textures[i].repeats == (i > 0));
 	scenery_finish(&s);
 	picture_finish(&picture);
 }
 
 static void all_pictures_stay_within_their_budget(void **state)
 {
-	struct picture picture = { 4096, 1, calloc(4096, 4) };
-	struct scenery_material glass = scenery_plain;
+	struct picture picture = { 4096, 4096, calloc(4096 * 4096, 4) };
 	struct scenery_maker maker = { 0 };
 	struct soup_triangle square[2];
 	uint32_t node;
+	int rc = 0;
 
 	(void)state;
-	glass.opacity = 0.5f;
 	make_square(square);
+	square[0].corners[0].uv[0] = NAN; /* of a broken file */
+	square[0].corners[1].uv[1] = 1e30f;
 	CHECK(scenery_add_node(&maker, &root, &node) == 0);
-	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
-	CHECK(maker.triangle_count > SCENERY_PAINT_SURFACE_MAX / 2 &&
-	      maker.triangle_count <= SCENERY_PAINT_SURFACE_MAX);
-	for (int i = 0; i < 100; i++)
-		CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) ==
-		      0);
-	CHECK(maker.triangle_count <= SCENERY_PAINT_MAX + 2 * 101);
-	/* What is transparent is sorted in each frame, and is not divided. */
-	CHECK(scenery_add_surface(&maker, node, &glass, square, 2, 0, &picture) == 0);
-	CHECK(maker.clear_count == 2);
+	for (uint32_t i = 0; i < 6; i++) {
+		picture.rgba[0] = (uint8_t)i;
+		rc = scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture);
+		CHECK(rc == 0);
+		CHECK(maker.out.textures[i].width <= SCENERY_TEXTURE_PX_MAX);
+		CHECK(scenery_texels(&maker.out) <= SCENERY_TEXELS_MAX);
+	}
+	CHECK(scenery_texels(&maker.out) > SCENERY_TEXELS_MAX / 2);
 	scenery_maker_finish(&maker);
 	picture_finish(&picture);
+}
+
+/* A white bar in the middle of a black picture stays there, and as bright, at any size. */
+static void a_resized_picture_keeps_its_places(void **state)
+{
+	static const uint32_t widths[] = { 100, 128, 90, 300 };
+
+	(void)state;
+	for (size_t c = 0; c < 4; c++) {
+		const uint32_t width = widths[c];
+		struct picture in = { width, 2, calloc(width, 8) };
+		struct scenery_texture out;
+		struct picture back;
+		double sum = 0, moment = 0;
+
+		for (uint32_t i = 0; i < 2 * width; i++)
+			if (i % width >= width / 2 - 20 && i % width < width / 2)
+				memset(&in.rgba[4 * i], 255, 4);
+		CHECK(scenery_texture_make(&out, &in, false, 1 << 20) == 0);
+		CHECK(out.width == (c == 3 ? 256 : c == 2 ? 64 : 128) && out.height == 2);
+		CHECK(picture_decode(&back, (struct bytes){ out.jpeg, out.jpeg_bytes }) == 0);
+		for (uint32_t i = 0; i < back.width; i++) {
+			sum += back.rgba[4 * i];
+			moment += back.rgba[4 * i] * (i + 0.5);
+		}
+		moment *= (double)width / out.width / sum;
+		sum *= (double)width / out.width / 255;
+		if (fabs(sum - 20) > 1 || fabs(moment - (width / 2.0 - 10)) > 0.5)
+			fail_msg("%u: %.2f wide at %.2f", width, sum, moment);
+		free(out.jpeg);
+		picture_finish(&back);
+		picture_finish(&in);
+	}
 }
 
 /* Gives the PNG in data, by a name. */
@@ -211,11 +290,13 @@ static void a_picture_that_cannot_be_read_is_a_warning(void **state)
 	for (size_t i = 0; i < 2; i++) {
 		struct diagnostics warnings = { 0 };
 		struct scenery s;
+		uint8_t rgb[3];
 
 		make_vrml(&s, cases[i][0], &warnings);
 		if (!strstr(warnings.first.text, cases[i][1]))
 			fail_msg("case %zu: %s", i, warnings.first.text);
-		CHECK(scenery_triangles(&s) == 2 && colour_at(&s, 0, 0)[0] == 51);
+		colour_at(rgb, &s, 0.5f, 0.25f);
+		CHECK(scenery_triangles(&s) == 2 && s.texture_count == 0 && rgb[0] == 51);
 		scenery_finish(&s);
 	}
 }
@@ -286,8 +367,9 @@ static void a_base_colour_texture_is_shown(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_square_is_divided_until_its_picture_shows),
+		cmocka_unit_test(a_picture_is_kept_once_with_sides_that_are_powers_of_two),
 		cmocka_unit_test(all_pictures_stay_within_their_budget),
+		cmocka_unit_test(a_resized_picture_keeps_its_places),
 		cmocka_unit_test(an_image_texture_takes_the_place_of_the_colour),
 		cmocka_unit_test(a_picture_that_cannot_be_read_is_a_warning),
 		cmocka_unit_test(a_base_colour_texture_is_shown),

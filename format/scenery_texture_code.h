@@ -1,0 +1,17 @@
+/* The pictures of scenery as bytes: docs/scenery.md. */
+#ifndef GOPURA_FORMAT_SCENERY_TEXTURE_CODE_H
+#define GOPURA_FORMAT_SCENERY_TEXTURE_CODE_H
+
+#include "format/scenery.h"
+
+/* Appends the pictures, which materials have them, and where they lie on meshes. */
+void scenery_put_textures(struct buffer *out, const struct scenery *scenery);
+/* Reads what scenery_put_textures wrote; the rest of the scenery must be there. Returns -EBADMSG
+ * where there is no room for it, or -ENOMEM. */
+must_check int scenery_get_textures(struct reader *in, struct scenery *scenery);
+
+/* Decodes the pictures into their rgba. Returns -EBADMSG if one is damaged or has another size, or
+ * -ENOMEM. */
+must_check int scenery_decode_textures(struct scenery *scenery);
+
+#endif
