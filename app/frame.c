@@ -139,7 +139,8 @@ void frame_note_shown(struct frame *frame)
 	gpu_us = gpu_timer_take_us(&frame->timer);
 	if (late_us > target_us * 3 / 2 && late_us > spent_us)
 		spent_us = late_us;
-	governor_note(&frame->governor, gpu_us > spent_us ? gpu_us : spent_us);
+	governor_note(&frame->governor, gpu_us > spent_us ? gpu_us : spent_us,
+		      shown_by(frame)->frame.triangles);
 }
 
 int frame_period_ms(const struct frame *frame)

@@ -130,10 +130,10 @@ static uint32_t heap_pop(struct cut *cut)
 
 float cut_group_error_px(const struct hierarchy_group *group, const float eye_m[3], float focal_px)
 {
-	float distance = vec_distance(group->centre_m, eye_m) - group->radius_m;
-	if (distance <= 0)
-		return INFINITY;
-	return group->error_m * focal_px / distance;
+	static const float nearest_m = 1e-4f;
+	const float distance_m = vec_distance(group->centre_m, eye_m) - group->radius_m;
+
+	return group->error_m * focal_px / vec_most(distance_m, nearest_m);
 }
 
 /* The viewpoint, the allowed groups and the limits for growing a cut. */

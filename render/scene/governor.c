@@ -25,9 +25,10 @@ static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
 /* Where the parts of the effort begin to give way, in the order of what a picture loses for the
  * time that is gained (docs/figures.md, Levels of the governor): the scale first. */
 static const float level_faces = 0.4f, level_triangles = 0.2f, level_budget = 0.1f;
-/* At the lowest level: how much coarser patches are, and the share of the time budgets. */
-static const float coarser_most = 2, budget_least = 0.25f;
-enum { FACES_LEAST = 1 };
+/* At the lowest level: the share of the time budgets. */
+static const float budget_least = 0.25f;
+/* Fewer triangles cost the picture more than they save (docs/figures.md). */
+enum { FACES_LEAST = 1, TRIANGLES_LEAST = 60000 };
 
 void governor_init(struct governor *governor, const struct governor_bounds *bounds)
 {
@@ -91,13 +92,20 @@ static void come_back(struct governor *governor)
 	}
 }
 
-void governor_note(struct governor *governor, int64_t spent_us)
+static bool limits_triangles(const struct governor *governor)
+{
+	return governor->level < level_triangles && governor->whole > TRIANGLES_LEAST;
+}
+
+void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangles)
 {
 	const int64_t target_us = governor_target_us(governor);
 	const float load = (float)spent_us / (float)target_us;
 	const int64_t passed_us = spent_us > target_us ? spent_us : target_us;
 	if (governor_is_fixed(governor))
 		return;
+	if (!limits_triangles(governor))
+		governor->whole = triangles;
 	governor->quiet_us += passed_us;
 	governor->risen_us += passed_us;
 	governor->held_us += passed_us;
@@ -133,11 +141,15 @@ struct scene_effort governor_effort(const struct governor *governor)
 {
 	const float level = governor->level, least = governor->bounds.scale_least;
 	const float faces = between(level, level_triangles, level_faces);
-	const float coarser = 1 - between(level, level_budget, level_triangles);
+	const float triangles = between(level, level_budget, level_triangles);
 	return (struct scene_effort){
 		.scale = least + (1 - least) * between(level, level_faces, 1),
-		.coarser = 1 + (coarser_most - 1) * coarser,
 		.faces = FACES_LEAST + (uint32_t)lroundf((PLAN_ENTRIES - FACES_LEAST) * faces),
+		.triangles = limits_triangles(governor)
+				     ? (uint32_t)(TRIANGLES_LEAST *
+						  powf((float)governor->whole / TRIANGLES_LEAST,
+						       triangles))
+				     : UINT32_MAX,
 		.budget = budget_least + (1 - budget_least) * between(level, 0, level_budget),
 	};
 }

@@ -1,7 +1,8 @@
 /* The frame-time governor: a feedback controller that holds the frames of a moving eye at the
  * panel's rate, or at the highest divisor of it that the board can hold down to 30 a second. It
- * takes what harms least first: the picture's scale, then faces per piece, then triangles, then the
- * time for uploads and planning. A board needs no description for that; bounds are optional.
+ * takes what harms least first: the picture's scale, then faces per piece, then the number of
+ * triangles, then the time for uploads and planning. A board needs no description for that; bounds
+ * are optional.
  *
  * It gives way at once and comes back slowly, and there is a dead band between the two loads
  * (hysteresis), so that the picture does not breathe. Pure: no GL, no clock. */
@@ -20,6 +21,7 @@ struct governor {
 	struct governor_bounds bounds;
 	float level;      /* 1: everything at full effort, 0: the least */
 	uint32_t divisor; /* refreshes of the panel for each frame */
+	uint32_t whole;   /* triangles of the last frame in which they were not limited */
 	float over;       /* load of the last frame, if it was too much; else 0 */
 	int64_t quiet_us; /* time of moving frames since the level last changed or one was late */
 	float most;       /* largest load in that time */
@@ -30,8 +32,8 @@ struct governor {
 
 /* Starts at full effort and at the panel's rate. */
 void governor_init(struct governor *governor, const struct governor_bounds *bounds);
-/* Takes the time that a frame of a moving eye took, in microseconds. */
-void governor_note(struct governor *governor, int64_t spent_us);
+/* Takes the time that a frame of a moving eye took, in microseconds, and the triangles in it. */
+void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangles);
 /* Returns whether its bounds leave nothing to govern. */
 bool governor_is_fixed(const struct governor *governor);
 /* Returns the time that a frame may take now. */

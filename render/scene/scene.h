@@ -36,10 +36,10 @@ struct scene_options {
 /* What a frame costs while the eye moves (render/scene/governor.h chooses it). At rest everything
  * is drawn at full effort. */
 struct scene_effort {
-	float scale;   /* of the sides of the picture that is drawn and then enlarged; 1: none is */
-	float coarser; /* factor of patch_error_px for what is shown; 1: none */
-	uint32_t faces; /* most that colour a piece */
-	float budget;   /* share of the time for uploads and planning, 0 to 1 */
+	float scale; /* of the sides of the picture that is drawn and then enlarged; 1: none is */
+	uint32_t faces;     /* most that colour a piece */
+	uint32_t triangles; /* most that are drawn, besides triangle_budget */
+	float budget;       /* share of the time for uploads and planning, 0 to 1 */
 };
 extern const struct scene_effort scene_effort_full;
 

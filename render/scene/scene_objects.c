@@ -66,7 +66,7 @@ static int make_atlases(struct scene *scene)
 /* ---- life */
 
 const struct scene_effort scene_effort_full = {
-	.scale = 1, .coarser = 1, .faces = PLAN_ENTRIES, .budget = 1
+	.scale = 1, .faces = PLAN_ENTRIES, .triangles = UINT32_MAX, .budget = 1
 };
 
 int scene_create(struct scene **out, const struct scene_options *options)

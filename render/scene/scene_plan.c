@@ -88,7 +88,8 @@ void scene_update_cut(struct scene *scene, float passed_ms)
 {
 	struct cut_options options = cut_options_of(scene);
 	struct geometry *geometry = &scene->geometry;
-	options.error_px *= scene->used.coarser;
+	if (options.triangle_budget > scene->used.triangles)
+		options.triangle_budget = scene->used.triangles;
 	geometry_evict(geometry, &scene->cut, geometry_budget(scene));
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->changes;

@@ -268,6 +268,7 @@ static struct cost cost_of(struct bench *bench, struct camera camera)
 	camera.height_px = bench->stage.target.height_px;
 	stage_settle(&bench->stage, &camera, SETTLE_MS, &bench->frame);
 	bench->unsettled += !bench->frame.settled;
+	bench->governor.whole = bench->frame.triangles;
 	bench->moving = camera;
 	cost.scene = median_spent(bench, draw_moving);
 	cost.plain = median_spent(bench, draw_plain);
@@ -346,15 +347,14 @@ static void measure_levels(struct bench *bench, const struct stage_options *opti
 		struct cost cost;
 
 		bench->governor.level = levels[i];
-		effort = governor_effort(&bench->governor);
 		cost = mode_cost(bench, SCENE_LUMIGRAPH);
-		printf(" {\"level\": %.1f, \"scale\": %.2f, \"coarser\": %.2f, \"faces\": %u, "
+		effort = governor_effort(&bench->governor);
+		printf(" {\"level\": %.1f, \"scale\": %.2f, \"triangles\": %.0f, \"faces\": %u, "
 		       "\"plain_cpu_ms\": %.1f, \"lumigraph_cpu_ms\": %.1f, "
 		       "\"cpu_per_plain\": %.2f, \"lumigraph_per_plain\": %.2f}%s\n",
-		       (double)levels[i], (double)effort.scale, (double)effort.coarser,
-		       effort.faces, cost.plain.cpu_ms, cost.scene.cpu_ms,
-		       cost.scene.cpu_ms / cost.plain.cpu_ms, cost.scene.ms / cost.plain.ms,
-		       i + 1 < ARRAY_COUNT(levels) ? "," : "");
+		       (double)levels[i], (double)effort.scale, cost.triangles, effort.faces,
+		       cost.plain.cpu_ms, cost.scene.cpu_ms, cost.scene.cpu_ms / cost.plain.cpu_ms,
+		       cost.scene.ms / cost.plain.ms, i + 1 < ARRAY_COUNT(levels) ? "," : "");
 		fflush(stdout);
 	}
 	stage_close(&bench->stage);

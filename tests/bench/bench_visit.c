@@ -3,7 +3,7 @@
  *
  *   bench_visit RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--link MBIT] [--latency MS]
  *               [--price PX] [--load none|core|heat] [--level L] [--times N]
- *               [--effort SCALE,COARSER,FACES,BUDGET] [--keep yes]
+ *               [--effort SCALE,TRIANGLES,FACES,BUDGET] [--keep yes]
  *
  * A frame takes the time that its work takes on two cores (stage.h, work_clock), so other work on
  * the machine hardly changes what is measured, and neither does the comparison with the truth. The
@@ -198,7 +198,9 @@ static struct shot *shoot(struct bench *bench, uint32_t leg, int64_t began_us,
 	shot->uploads = frame.tiles_uploaded;
 	shot->depths = frame.depth_faces_drawn;
 	if (frame.moved && !bench->is_held)
-		governor_note(&bench->governor, stage->spent_us);
+		governor_note(&bench->governor, stage->spent_us, frame.triangles);
+	if (bench->is_held && frame.triangles > bench->governor.whole)
+		bench->governor.whole = frame.triangles;
 	return shot;
 }
 
@@ -397,13 +399,13 @@ static void report_frames(const struct bench *bench)
 
 		fprintf(file,
 			"{\"at_ms\": %.1f, \"leg\": %u, \"rests\": %d, \"spent_ms\": %.2f, "
-			"\"wall_ms\": %.2f, \"thread_ms\": %.2f, \"level\": %.2f, \"scale\": %.3f, \"coarser\": %.2f, "
+			"\"wall_ms\": %.2f, \"thread_ms\": %.2f, \"level\": %.2f, \"scale\": %.3f, "
 			"\"faces\": %u, \"divisor\": %u, \"triangles\": %u, \"uploads\": %u, "
 			"\"depths\": %u, \"psnr\": %.2f}\n",
 			(double)s->at_us / 1000, s->leg, s->rests, s->spent_ms, s->wall_ms,
-			s->thread_ms, (double)s->level, (double)s->effort.scale,
-			(double)s->effort.coarser, s->effort.faces, s->divisor, s->triangles,
-			s->uploads, s->depths, isnan(s->psnr) ? -1 : s->psnr);
+			s->thread_ms, (double)s->level, (double)s->effort.scale, s->effort.faces,
+			s->divisor, s->triangles, s->uploads, s->depths,
+			isnan(s->psnr) ? -1 : s->psnr);
 	}
 	if (file)
 		fclose(file);
@@ -450,7 +452,7 @@ static void read_option(struct bench *bench, const char *name, const char *value
 	} else if (!strcmp(name, "--effort")) {
 		struct scene_effort *e = &bench->effort;
 
-		if (sscanf(value, "%f,%f,%u,%f", &e->scale, &e->coarser, &e->faces, &e->budget) !=
+		if (sscanf(value, "%f,%u,%u,%f", &e->scale, &e->triangles, &e->faces, &e->budget) !=
 		    4)
 			stage_die(value, -EINVAL);
 		bench->is_held = true;

@@ -5,7 +5,7 @@
 #include "render/scene/governor.h"
 #include "tests/check.h"
 
-enum { REFRESH_US = 16667 };
+enum { REFRESH_US = 16667, WHOLE = 300000 /* triangles in sight */ };
 
 /* A board: the fixed time of a frame, that of all pixels at full size, of all triangles, and how
  * much slower than usual it is now. */
@@ -42,10 +42,12 @@ static float frame(struct visit *visit)
 	const struct scene_effort effort = governor_effort(&visit->governor);
 	const struct board *b = &visit->board;
 	const float area = effort.scale * effort.scale, faces = 0.4f + 0.15f * (float)effort.faces;
-	float ms = b->fixed_ms + b->pixels_ms * area * faces + b->triangles_ms / effort.coarser;
+	const uint32_t triangles = effort.triangles < WHOLE ? effort.triangles : WHOLE;
+	float ms = b->fixed_ms + b->pixels_ms * area * faces +
+		   b->triangles_ms * (float)triangles / (float)WHOLE;
 
 	ms *= b->slowness * (1 + 0.04f * noise(visit));
-	governor_note(&visit->governor, (int64_t)(1000 * ms));
+	governor_note(&visit->governor, (int64_t)(1000 * ms), triangles);
 	visit->now_ms += fmaxf(ms, (float)governor_target_us(&visit->governor) / 1000);
 	visit->frames++;
 	visit->scale_changes += effort.scale != visit->last_scale;
@@ -93,14 +95,15 @@ static void the_scale_gives_way_before_faces_and_these_before_triangles(void **s
 	struct scene_effort last = scene_effort_full;
 	(void)state;
 	governor_init(&governor, &(struct governor_bounds){ .scale_least = 0.5f });
+	governor.whole = WHOLE;
 	for (int i = 0; i < 100; i++) {
 		governor.level = 1 - (float)i / 100;
 		const struct scene_effort effort = governor_effort(&governor);
-		CHECK(effort.scale <= last.scale && effort.coarser >= last.coarser);
+		CHECK(effort.scale <= last.scale && effort.triangles <= last.triangles);
 		CHECK(effort.faces <= last.faces && effort.budget <= last.budget);
 		CHECK(effort.faces == scene_effort_full.faces || effort.scale == 0.5f);
-		CHECK(effort.coarser == 1 || effort.faces == 1);
-		CHECK(effort.budget == 1 || effort.coarser > 1.9f);
+		CHECK(effort.triangles >= WHOLE || effort.faces == 1);
+		CHECK(effort.budget == 1 || effort.triangles <= WHOLE / 5);
 		last = effort;
 	}
 }
@@ -175,7 +178,7 @@ static void a_bound_of_full_size_governs_nothing(void **state)
 	governor_init(&governor, &(struct governor_bounds){ .scale_least = 1 });
 	CHECK(governor_is_fixed(&governor));
 	for (int i = 0; i < 100; i++)
-		governor_note(&governor, 500000);
+		governor_note(&governor, 500000, WHOLE);
 	CHECK(governor.level == 1 && governor_target_us(&governor) == REFRESH_US);
 }
 
