@@ -118,12 +118,15 @@ torture: all $(BUILD)/.test-deps ## every allocation and every call on a file fa
 golden: all $(BUILD)/.test-deps ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
 	@LANGUAGES="$(or $(LANGUAGES),en km ja ar)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
-image: all ## the bootable disk image of a terminal, build/image/gopura.img
-	@./deps.sh image/tools.txt
+# image/arch.sh reads ARCH from the environment, where make puts it if the command line has it.
+IMAGE_DEPS = ./deps.sh image/tools.txt$(if $(filter arm64,$(ARCH)), && ./deps.sh image/tools-arm64.txt)
+
+image: all ## the bootable disk image of a terminal, build/image/gopura.img; ARCH=arm64: build/image-arm64/gopura.img
+	@$(IMAGE_DEPS)
 	@image/build.sh
 
 image-check: all ## check that two builds of the image have the same slots
-	@./deps.sh image/tools.txt
+	@$(IMAGE_DEPS)
 	@image/check.sh
 
 fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each; TARGET=NAME for one; KEEP=yes adds inputs that it found to the corpora
@@ -139,9 +142,9 @@ interrupted: all $(BUILD)/.test-deps ## builds killed and out of disk at random 
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 	@KILLS=20 SEED=$(or $(SEED),1) bash tests/e2e/publish.sh
 
-qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk
+qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk; ARCH=arm64: temple, tap and updates of that image
 	@bash tests/qemu/image.sh updates
-	@bash tests/qemu/disks.sh all
+	@$(if $(filter arm64,$(ARCH)),,bash tests/qemu/disks.sh all)
 
 qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC screen
 	@./deps.sh image/tools.txt
@@ -201,14 +204,15 @@ ifeq ($(WINDOW),yes)
 $(ARCHIVE): $(OBJECTS)
 	@rm -f $@
 	@ar rcs $@ $^
-else # the objects of build/, but for those that know of the window
-$(ARCHIVE): $(BUILD)/obj/render/display/display.o build/libgopura.a
-	@cp build/libgopura.a $@
+else # the objects of the folder that this one is in, but for those that know of the window
+BESIDE = $(patsubst %/,%,$(dir $(BUILD)))
+$(ARCHIVE): $(BUILD)/obj/render/display/display.o $(BESIDE)/libgopura.a
+	@cp $(BESIDE)/libgopura.a $@
 	@ar d $@ display_window.o
 	@ar rs $@ $<
 
-build/libgopura.a: FORCE
-	@$(MAKE) --no-print-directory WINDOW=yes BUILD=build $@
+$(BESIDE)/libgopura.a: FORCE
+	@$(MAKE) --no-print-directory WINDOW=yes BUILD=$(BESIDE) CC="$(CC)" $@
 FORCE:
 endif
 

@@ -5,6 +5,8 @@ set -eu
 tree=$out/tree kernel=$out/kernel
 version=$(basename "$kernel"/lib/modules/*)
 list() { grep -v '^#' "$1"; }
+# modules: the lines of image/modules for this architecture
+modules() { list "$here/modules" | awk -v arch="$ARCH" '$1 == "amd64" || $1 == "arm64" { if ($1 != arch) next; sub(/^[^ ]* /, "") } { print }'; }
 rm -rf "$tree"
 mkdir -p "$tree"
 tar -x --exclude=./dev -C "$tree" -f "$out/base.tar"
@@ -14,7 +16,7 @@ left_out() { echo "$*" >>"$out/left-out.txt"; }
 # ---- remove what only serves to build or administer a Debian system
 cat "$tree/packages.txt" "$kernel/package.txt" >"$out/packages.txt"
 rm "$tree/packages.txt"
-for path in usr/bin/perl* usr/lib/x86_64-linux-gnu/perl* usr/lib/x86_64-linux-gnu/libperl* usr/share/perl* \
+for path in usr/bin/perl* usr/lib/"$triplet"/perl* usr/lib/"$triplet"/libperl* usr/share/perl* \
 	usr/bin/apt* usr/bin/dpkg* usr/lib/apt usr/lib/dpkg var/lib/dpkg var/lib/apt var/cache var/log \
 	usr/share/doc usr/share/info usr/share/bash-completion usr/share/zsh usr/share/lintian usr/share/debconf \
 	usr/share/bug usr/lib/udev/hwdb.d usr/share/gcc usr/share/common-licenses \
@@ -36,9 +38,9 @@ list "$here/fonts" | while read -r font; do
 done
 
 # ---- kernel modules, by list
-modules=$tree/usr/lib/modules/$version
-mkdir -p "$modules"
-cp "$kernel/lib/modules/$version"/modules.{order,builtin,builtin.modinfo} "$modules/"
+kept=$tree/usr/lib/modules/$version
+mkdir -p "$kept"
+cp "$kernel/lib/modules/$version"/modules.{order,builtin,builtin.modinfo} "$kept/"
 depmod -b "$kernel" "$version"
 # wanted TO NAME...: copies the modules and all their dependencies
 wanted() {
@@ -54,25 +56,38 @@ wanted() {
 		done
 }
 # shellcheck disable=SC2046
-wanted "$modules" $(list "$here/modules" | sed 's/^early //')
+wanted "$kept" $(modules | sed 's/^early //')
 (cd "$kernel/lib/modules/$version" && find . -name '*.ko' | sort) | while read -r file; do
-	[ -f "$modules/$file" ] || left_out "/usr/lib/modules/$version/${file#./}"
+	[ -f "$kept/$file" ] || left_out "/usr/lib/modules/$version/${file#./}"
 done
 depmod -b "$tree/usr" -m /lib/modules "$version" 2>/dev/null || depmod -b "$tree" "$version"
 
 # ---- our programs
 for program in gopura-kiosk gopura-fetch gopura-setup gopura-health; do
-	install -m 755 -s "build/appliance/$program" "$tree/usr/bin/$program"
+	install -m 755 -s --strip-program="${cross}strip" "$programs/$program" "$tree/usr/bin/$program"
 done
-LD_PRELOAD='' ldd build/appliance/gopura-* | awk '/=>/ { print $1 }' | sort -u | while read -r library; do
-	[ -n "$(find "$tree/usr/lib" -name "$library" -print -quit)" ] ||
-		{ echo "image: no package of image/packages contains $library" >&2; exit 1; }
+install -D "$kernel/usr/bin/grub-editenv" "$tree/usr/lib/gopura/grub-editenv" # behind image/root/usr/bin/grub-editenv
+# Every library that the programs ask for, and that those ask for, must be there.
+asked() { "${cross}readelf" -d "$@" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | sort -u; }
+seen=' ' ask=$(asked "$tree"/usr/bin/gopura-* "$tree/usr/lib/gopura/grub-editenv")
+while [ -n "$ask" ]; do
+	files=()
+	for library in $ask; do
+		case $seen in *" $library "*) continue ;; esac
+		seen+="$library "
+		file=$(find "$tree/usr/lib" -name "$library" -print -quit)
+		[ -n "$file" ] || { echo "image: no package of image/packages contains $library" >&2; exit 1; }
+		files+=("$(realpath "$file")")
+	done
+	ask=
+	[ ${#files[@]} = 0 ] || ask=$(asked "${files[@]}")
 done
 # The kiosk's texts. They need the locale C.UTF-8, which the C library brings (ui/translate.c).
 mkdir -p "$tree/usr/share/locale"
-cp -r build/appliance/locale/. "$tree/usr/share/locale/"
+cp -r "$programs/locale/." "$tree/usr/share/locale/"
 [ -d "$tree/usr/lib/locale/C.utf8" ] || { echo "image: no package of image/packages contains the locale C.UTF-8" >&2; exit 1; }
 cp -r "$here/root/." "$tree/"
+sed -i "s/^compatible=.*/compatible=$compatible/" "$tree/etc/rauc/system.conf"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
 rm "$tree"/usr/lib/systemd/system/gopura-{curator,publisher}.service # for the machine with the scans
 # The font cache is made here, because fontconfig has nothing to find out at run time.
@@ -81,7 +96,6 @@ sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fon
 mkdir -p "$tree/usr/share/fonts/cache"
 mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura/board"
 install -m 644 board/*.ini "$tree/usr/share/gopura/board/"
-cp /usr/bin/grub-editenv "$tree/usr/lib/gopura/" # behind image/root/usr/bin/grub-editenv
 install -m 644 "$keys/cert.pem" "$tree/etc/rauc/keyring.pem"
 printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\nIMAGE_SEQUENCE=%s\n' "$version_text" "$sequence" >>"$tree/usr/lib/os-release"
 if [ -n "${RELEASE:-}" ]; then
@@ -110,14 +124,14 @@ fc-cache -s -y "$tree"
 early=$out/early
 rm -rf "$early"
 mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
-cp /bin/busybox "$early/bin/"
+cp "$kernel/bin/busybox" "$early/bin/"
 for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir ln hexdump switch_root basename readlink; do
 	ln -s busybox "$early/bin/$name"
 done
 install -m 755 "$here/init" "$early/init"
 cp "$kernel/lib/modules/$version"/modules.{order,builtin} "$early/lib/modules/$version/"
 # shellcheck disable=SC2046
-wanted "$early/lib/modules/$version" $(sed -n 's/^early //p' "$here/modules") 2>/dev/null
+wanted "$early/lib/modules/$version" $(modules | sed -n 's/^early //p') 2>/dev/null
 depmod -b "$early" "$version" 2>/dev/null
 find "$early" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
 boot=$out/boot
@@ -147,12 +161,12 @@ esp=$out/esp.vfat
 rm -f "$esp"
 truncate -s "${esp_mib}M" "$esp"
 mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
-grub-mkimage -O x86_64-efi -p /gopura -o "$out/BOOTX64.EFI" part_gpt fat ext2 normal configfile linux boot \
+grub-mkimage -d "$kernel/usr/lib/grub/$grub" -O "$grub" -p /gopura -o "$out/$loader" part_gpt fat ext2 normal configfile linux boot \
 	regexp loadenv probe test echo sleep reboot minicmd all_video
 grub-editenv "$out/grubenv" create
 grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0 KERNEL="${KERNEL:-}"
 mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura
-mcopy -i "$esp" "$out/BOOTX64.EFI" ::/EFI/BOOT/BOOTX64.EFI
+mcopy -i "$esp" "$out/$loader" "::/EFI/BOOT/$loader"
 mcopy -i "$esp" "$here/grub.cfg" "$out/grubenv" ::/gopura/
 conf=${CONF:-}
 if [ -z "$conf" ] && [ -n "${RELEASE:-}" ]; then

@@ -2,7 +2,9 @@
 # image/build.sh: builds the bootable disk image of a terminal, build/image/gopura.img, from Debian 12 packages and the
 # programs of this tree. Runs as root or as a user (mmdebstrap then needs user namespaces).
 #
-#   MIRROR=URL      of Debian (default: deb.debian.org); a date of snapshot.debian.org pins every package
+#   ARCH=arm64      for boards with UEFI firmware of that architecture (default: amd64); in build/image-arm64
+#   MIRROR=URL      of Debian (default: http://deb.debian.org); a date of snapshot.debian.org pins every package, with % for
+#                   debian and debian-security: http://snapshot.debian.org/archive/%/20261101T000000Z
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
@@ -13,7 +15,7 @@
 #   TRACKER=FILE    of Debian's known vulnerabilities, or its address (default: that of security-tracker.debian.org); "no" for
 #                   no report
 #   BUILDER=URI     of who builds, in provenance.json
-#   OUT=FOLDER      instead of build/image
+#   OUT=FOLDER      instead of build/image or build/image-arm64
 #
 # Output: base.tar (the packages), tree/ (the complete root), root.squashfs and boot.img (a slot), esp.vfat, gopura.img,
 # gopura.raucb (an update to the same system), packages.txt and sbom.spdx.json: what it is made of, vulnerabilities.txt:
@@ -22,7 +24,9 @@
 # docs/image.md explains the layout of the disk.
 set -eu
 cd "$(dirname "$0")/.."
-here=$PWD/image out=${OUT:-build/image} mirror=${MIRROR:-http://deb.debian.org}
+. image/arch.sh
+. image/apt.sh
+here=$PWD/image out=${OUT:-$image_folder} mirror=${MIRROR:-http://deb.debian.org}
 export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)} LC_ALL=C TZ=UTC
 export PATH=$PATH:/usr/sbin:/sbin
 slot_mib=300 boot_mib=48 esp_mib=64 data_mib=${DATA_MIB:-512}
@@ -33,25 +37,35 @@ list() { grep -v '^#' "$1"; }
 
 # ---- Debian's packages; made again if asked for, or if their list or the mirror changes
 package_form='\${Package}\t\${Version}\t\${Architecture}\t\${source:Package}\t\${source:Version}\n'
-key=$({ list image/packages; echo "$mirror $package_form"; } | sha256sum | cut -c1-16)
+key=$({ list image/packages; echo "$ARCH $mirror $package_form"; } | sha256sum | cut -c1-16)
 if [ "${FRESH:-no}" = yes ] || [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" ]; then
+	if [ -n "$cross" ] && ! arch-test "$ARCH" >/dev/null; then
+		echo "image: this machine cannot run programs for $ARCH, as installing packages needs: install image/tools-arm64.txt," \
+			"and as root: mount -t binfmt_misc binfmt_misc /proc/sys/fs/binfmt_misc; update-binfmts --enable" >&2
+		exit 1
+	fi
 	say "installing packages into base.tar"
-	rm -f "$out/base.key"
-	mmdebstrap --variant=essential --include="$(list image/packages | paste -sd,)" \
+	rm -rf "$out/base.key" "$out/kernel"
+	mmdebstrap --architectures="$ARCH" --variant=essential --include="$(list image/packages | paste -sd,)" \
 		--aptopt='APT::Install-Recommends "false"' \
 		--dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
 		--customize-hook='chroot "$1" dpkg-query -W -f "'"$package_form"'" >"$1/packages.txt"' \
-		bookworm "$out/base.tar" \
-		"deb $mirror/debian bookworm main" "deb $mirror/debian bookworm-updates main" \
-		"deb $mirror/debian-security bookworm-security main" >"$out/base.log" 2>&1 ||
+		bookworm "$out/base.tar" - <<<"$(apt_from "$mirror")" >"$out/base.log" 2>&1 ||
 		{ tail -n 20 "$out/base.log" >&2; exit 1; }
 	echo "$key" >"$out/base.key"
 fi
-image/kernel.sh "$out/kernel"
+image/kernel.sh "$out/kernel" busybox-static "grub-efi-$ARCH-bin" grub-common
 
 # ---- the programs, without support for a desktop window
-make --no-print-directory -j"$(nproc)" WINDOW=no BUILD=build/appliance \
-	build/appliance/gopura-{kiosk,fetch,setup,health}
+compiler=()
+if [ -n "$cross" ]; then
+	image/sysroot.sh
+	root=$PWD/build/$ARCH/sysroot
+	export PKG_CONFIG_SYSROOT_DIR=$root PKG_CONFIG_LIBDIR=$root/usr/lib/$triplet/pkgconfig:$root/usr/share/pkgconfig
+	compiler=(CC="$(command -v ccache || true) ${cross}gcc --sysroot=$root")
+fi
+make --no-print-directory -j"$(nproc)" WINDOW=no BUILD="$programs" "${compiler[@]}" \
+	"$programs"/gopura-{kiosk,fetch,setup,health}
 
 # ---- the key that signs updates
 keys=${KEYS:-build/image-keys}
@@ -66,7 +80,7 @@ fi
 say "assembling the root"
 version_text=${VERSION:-$(git describe --always --dirty)}
 sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
-export here out keys version_text sequence slot_mib boot_mib esp_mib data_mib
+export here out keys triplet grub loader compatible cross programs version_text sequence slot_mib boot_mib esp_mib data_mib
 fakeroot image/assemble.sh
 image/sbom.sh "$out/packages.txt" "$version_text" >"$out/sbom.spdx.json"
 image/bundle.sh "$out"

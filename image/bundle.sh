@@ -1,8 +1,9 @@
 #!/bin/bash
-# bundle.sh FOLDER: makes a signed update, gopura.raucb, from root.squashfs and boot.img in FOLDER (KEYS, VERSION and
-# SEQUENCE as in build.sh).
+# bundle.sh FOLDER: makes a signed update, gopura.raucb, from root.squashfs and boot.img in FOLDER (ARCH, KEYS, VERSION
+# and SEQUENCE as in build.sh).
 set -eu
 cd "$(dirname "$0")/.."
+. image/arch.sh
 out=$1 keys=${keys:-${KEYS:-build/image-keys}}
 work=$out/bundle
 version=${version_text:-${VERSION:-$(git describe --always --dirty)}}
@@ -22,7 +23,7 @@ mkdir -p "$work"
 ln "$out/root.squashfs" "$out/boot.img" "$work/"
 cat >"$work/manifest.raucm" <<M
 [update]
-compatible=gopura-x86-64
+compatible=$compatible
 version=$version
 build=$sequence
 

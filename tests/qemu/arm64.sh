@@ -30,43 +30,12 @@ done
 sample='^(base|format|geometry|storage|net|render/plan|pipeline/(hierarchy|material|import))/'
 [ "${1:-}" = all ] || left_out[base/test_spill]="over 5 s there, runs in make arm64"
 
-# ---- packages of arm64: fetched by apt as if for another machine, with lists and status of its own
-apt_arm64() {
-	apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures::=arm64 -o APT::Install-Recommends=false \
-		-o APT::Sandbox::User= -o Debug::NoLocking=true -o Dir::State::lists="$packages/lists" \
-		-o Dir::State::status="$packages/status" -o Dir::Cache="$packages/cache" \
-		-o Dir::Etc::sourcelist="$packages/sources.list" -o Dir::Etc::sourceparts=/dev/null "$@"
-}
-unpack_sysroot() {
-	local packages=$PWD/$build/packages wanted link deb
-	wanted=$(grep -h -- '-dev$' packages.txt tests/tools.txt)
-	[ "$wanted" != "$(cat "$root/.of" 2>/dev/null)" ] || return 0
-	rm -rf "$root" "$packages"
-	mkdir -p "$root" "$packages"/{lists,cache/archives}/partial
-	echo "deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main" \
-		>"$packages/sources.list"
-	: >"$packages/status"
-	# shellcheck disable=SC2086
-	{ apt_arm64 update && apt_arm64 install -y --download-only $wanted; } >"$work/apt.log" 2>&1 ||
-		{ tail -n 3 "$work/apt.log"; skip "packages of arm64 could not be fetched"; }
-	for deb in "$packages"/cache/archives/*.deb; do
-		dpkg-deb -x "$deb" "$root"
-	done
-	# Names that begin at the root would be this machine's. And qemu-user takes every file from here
-	# that is here: fonts, settings and folders for temporary files are to be this machine's.
-	find "$root"/usr/lib "$root"/lib -type l -lname '/*' | while read -r link; do
-		ln -sfnr "$root$(readlink "$link")" "$link"
-	done
-	rm -rf "$root"/{etc,var,tmp,bin,sbin} "$root"/usr/{bin,sbin,share/fonts,share/doc} "$packages"
-	echo "$wanted" >"$root/.of"
-}
-
 began=$SECONDS
 say() {
 	echo "$1: $((SECONDS - began)) s"
 	began=$SECONDS
 }
-unpack_sysroot
+image/sysroot.sh >"$work/sysroot.log" || skip "$(tail -n 1 "$work/sysroot.log")"
 say "packages, $(du -sm "$root" | cut -f 1) MB"
 
 tests=$(find tests -name 'test_*.c' | sort | sed 's|^tests/||; s|\.c$||')

@@ -3,14 +3,17 @@
 # journal on the serial line. An existing one is kept unless something that it is made of is newer.
 set -eu
 cd "$(dirname "$0")/../.."
-out=$1
+. image/arch.sh
+out=$1 console=ttyS0
+[ "$ARCH" = amd64 ] || console=ttyAMA0
 tests/qemu/make-release.sh build/qemu
 made_of=(image systemd board/*.ini system/gopura.conf.example build/gopura-{kiosk,fetch,setup,health} build/qemu/release/release.json tests/qemu/lib-image.sh)
 if [ -f "$out/gopura.raucb" ] && [ -z "$(find "${made_of[@]}" -newer "$out/gopura.img" -print -quit)" ]; then
 	echo "image: $out/gopura.img is there"
 	exit 0
 fi
+mkdir -p "$out"
 conf=$(dirname "$out")
 cp build/qemu/release/root/1.json "$conf/root.json"
 printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
-CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=ttyS0 loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
+CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh

@@ -41,16 +41,17 @@ def tones(rows):
 
 
 class Machine:
-    """A machine under TCG with a panel, a tablet and a log on its serial line; `arguments` say what it starts from."""
+    """A machine under TCG with a panel, a tablet and a log on its serial line; `kind` is the program that emulates it and its processor,
+    `arguments` say what it starts from."""
 
-    def __init__(self, work, case, arguments):
+    def __init__(self, work, case, arguments, kind=("qemu-system-x86_64", "-cpu", "max")):
         self.work, self.serial = work, os.path.join(work, f"{case}.log")
         socket_path = os.path.join(work, "qmp.sock")
         for path in (socket_path, self.serial):
             if os.path.exists(path):
                 os.unlink(path)
         self.process = subprocess.Popen(
-            ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
+            [*kind, "-accel", "tcg,thread=multi", "-smp", "2", "-m", "1536",
              "-display", "none", "-nodefaults", "-vga", "none",
              "-device", f"virtio-gpu-pci,xres={WIDTH},yres={HEIGHT}", "-device", "virtio-tablet-pci",
              "-serial", f"file:{self.serial}", "-qmp", f"unix:{socket_path},server,nowait", *arguments])

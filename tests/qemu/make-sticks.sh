@@ -1,10 +1,13 @@
 #!/bin/bash
-# make-sticks.sh IMAGE_FOLDER WORK: makes update bundles for the sticks of appliance.py: next (the same system, newer),
-# tampered (next with one byte changed), older (the image's own system, below the floor that next sets), blank (boots,
-# but its kiosk shows nothing), hangs (the kernel stops half a minute after the start).
+# make-sticks.sh IMAGE_FOLDER WORK NAME...: makes update bundles for the sticks of appliance.py: always next (the same
+# system, newer), tampered (next with one byte changed) and older (the image's own system, below the floor that next
+# sets); by name also blank (boots, but its kiosk shows nothing) and hangs (the kernel stops half a minute after the
+# start).
 set -eu
 cd "$(dirname "$0")/../.."
 image=$1 work=$2
+shift 2
+rm -rf "$work"
 mkdir -p "$work"
 
 # stick NAME BUNDLE
@@ -50,6 +53,7 @@ printf 'x' | dd of="$work/tampered.raucb" bs=1 seek=$(($(stat -c %s "$work/tampe
 stick tampered "$work/tampered.raucb"
 VERSION=before SEQUENCE=$((sequence - 2)) image/bundle.sh "$work"
 stick older "$work/gopura.raucb"
-variant blank blank
-variant hangs hangs
+for name; do
+	variant "$name" "$name"
+done
 rm -f "$work"/*.squashfs "$work"/*.raucb "$work/boot.img" "$work/kiosk"
