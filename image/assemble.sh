@@ -67,21 +67,26 @@ for program in gopura-kiosk gopura-fetch gopura-setup gopura-health; do
 	install -m 755 -s --strip-program="${cross}strip" "$programs/$program" "$tree/usr/bin/$program"
 done
 install -D "$kernel/usr/bin/grub-editenv" "$tree/usr/lib/gopura/grub-editenv" # behind image/root/usr/bin/grub-editenv
-# Every library that the programs ask for, and that those ask for, must be there.
+# libraries FILE...: prints every library of the tree that the files ask for, or one of those does; all must be there
 asked() { "${cross}readelf" -d "$@" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | sort -u; }
-seen=' ' ask=$(asked "$tree"/usr/bin/gopura-* "$tree/usr/lib/gopura/grub-editenv")
-while [ -n "$ask" ]; do
-	files=()
-	for library in $ask; do
-		case $seen in *" $library "*) continue ;; esac
-		seen+="$library "
-		file=$(find "$tree/usr/lib" -name "$library" -print -quit)
-		[ -n "$file" ] || { echo "image: no package of image/packages contains $library" >&2; exit 1; }
-		files+=("$(realpath "$file")")
+libraries() {
+	local seen=' ' ask files library file
+	ask=$(asked "$@")
+	while [ -n "$ask" ]; do
+		files=()
+		for library in $ask; do
+			case $seen in *" $library "*) continue ;; esac
+			seen+="$library "
+			file=$(find "$tree/usr/lib" -name "$library" -print -quit)
+			[ -n "$file" ] || { echo "image: no package of image/packages contains $library" >&2; exit 1; }
+			echo "$file"
+			files+=("$(realpath "$file")")
+		done
+		ask=
+		[ ${#files[@]} = 0 ] || ask=$(asked "${files[@]}")
 	done
-	ask=
-	[ ${#files[@]} = 0 ] || ask=$(asked "${files[@]}")
-done
+}
+libraries "$tree"/usr/bin/gopura-* "$tree/usr/lib/gopura/grub-editenv" >/dev/null
 # The kiosk's texts. They need the locale C.UTF-8, which the C library brings (ui/translate.c).
 mkdir -p "$tree/usr/share/locale"
 cp -r "$programs/locale/." "$tree/usr/share/locale/"
@@ -120,11 +125,17 @@ rm -rf "$tree"/{boot,media,mnt,opt} "$tree"/{home,srv}/*  # systemd-tmpfiles wan
 find "$tree" -newermt "@$SOURCE_DATE_EPOCH" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
 fc-cache -s -y "$tree"
 
-# ---- the slot: kernel, initramfs and root
+# ---- the slot: kernel, initramfs and root (slot.sh)
 early=$out/early
 rm -rf "$early"
 mkdir -p "$early"/{bin,dev,proc,sys,root,lib/modules/"$version"}
 cp "$kernel/bin/busybox" "$early/bin/"
+# dmsetup makes the verified root, which its libraries are on: it brings its own.
+install -D "$tree/usr/sbin/dmsetup" "$early/bin/dmsetup"
+mkdir -p "$early/usr/lib/$triplet"
+libraries "$early/bin/dmsetup" | xargs cp -Lt "$early/usr/lib/$triplet"
+interpreter=$("${cross}readelf" -l "$early/bin/dmsetup" | sed -n 's/.*program interpreter: \(.*\)\]/\1/p')
+install -D "$(find "$tree/usr/lib" -name "${interpreter##*/}" -print -quit)" "$early$interpreter"
 for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir ln hexdump switch_root basename readlink; do
 	ln -s busybox "$early/bin/$name"
 done
@@ -133,41 +144,30 @@ cp "$kernel/lib/modules/$version"/modules.{order,builtin} "$early/lib/modules/$v
 # shellcheck disable=SC2046
 wanted "$early/lib/modules/$version" $(modules | sed -n 's/^early //p') 2>/dev/null
 depmod -b "$early" "$version" 2>/dev/null
-find "$early" -exec touch -hcd "@$SOURCE_DATE_EPOCH" {} +
-boot=$out/boot
-rm -rf "$boot"
-mkdir -p "$boot"
-(cd "$early" && find . | sort | cpio -o -H newc --quiet --reproducible) | zstd -q -19 -T0 >"$boot/initrd"
-cp "$kernel"/boot/vmlinuz-* "$boot/vmlinuz"
-touch -d "@$SOURCE_DATE_EPOCH" "$boot"/* "$boot"
-
-rm -f "$out/boot.img"
-export E2FSPROGS_FAKE_TIME=$SOURCE_DATE_EPOCH
-mke2fs -q -t ext2 -U 6f707572-6100-4000-8000-000000000000 \
-	-E hash_seed=6f707572-6100-4000-8000-000000000001,root_owner=0:0 -d "$boot" "$out/boot.img" "${boot_mib}M" 2>/dev/null
-# mke2fs copies the change times of the files in $boot, which touch cannot set.
-for file in initrd vmlinuz; do
-	echo "set_inode_field $file ctime @$SOURCE_DATE_EPOCH"
-done | debugfs -w -f - "$out/boot.img" >/dev/null 2>&1
-rm -f "$out/root.squashfs"
-mksquashfs "$tree" "$out/root.squashfs" -all-root -comp zstd -Xcompression-level ${LEVEL:-15} -quiet -no-progress -noappend
-[ "$(stat -c %s "$out/root.squashfs")" -le $((slot_mib << 20)) ] || {
-	echo "image: the root is larger than a slot of $slot_mib MiB; see $out/tree" >&2
-	exit 1
-}
+cp "$kernel"/boot/vmlinuz-* "$out/vmlinuz"
+image/slot.sh "$out"
 
 # ---- the loader's partition
 esp=$out/esp.vfat
 rm -f "$esp"
 truncate -s "${esp_mib}M" "$esp"
 mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
-grub-mkimage -d "$kernel/usr/lib/grub/$grub" -O "$grub" -p /gopura -o "$out/$loader" part_gpt fat ext2 normal configfile linux boot \
-	regexp loadenv probe test echo sleep reboot minicmd all_video
+# The loader holds its own settings, and the public key that all it reads must be signed with, but for grubenv.
+rm -rf "$out/loader"
+mkdir -p "$out/loader/boot/grub"
+sed "s|@KERNEL@|${KERNEL:-}|" "$here/grub.cfg" >"$out/loader/boot/grub/grub.cfg"
+tar -c --format=ustar --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 -C "$out/loader" -f "$out/loader.tar" boot
+grub-mkimage -d "$kernel/usr/lib/grub/$grub" -O "$grub" -m "$out/loader.tar" -k "$keys/loader.pub" --disable-shim-lock \
+	-o "$out/$loader" part_gpt fat ext2 normal configfile linux boot regexp loadenv probe test echo sleep reboot minicmd \
+	all_video memdisk tar pgp gcry_rsa gcry_sha256
+sbsign --key "$keys/secure-boot.key" --cert "$keys/secure-boot.crt" --output "$out/$loader" "$out/$loader" 2>"$out/sbsign.log" ||
+	{ cat "$out/sbsign.log" >&2; exit 1; }
+openssl x509 -in "$keys/secure-boot.crt" -outform DER -out "$out/secure-boot.cer"
 grub-editenv "$out/grubenv" create
-grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0 KERNEL="${KERNEL:-}"
+grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0
 mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura
 mcopy -i "$esp" "$out/$loader" "::/EFI/BOOT/$loader"
-mcopy -i "$esp" "$here/grub.cfg" "$out/grubenv" ::/gopura/
+mcopy -i "$esp" "$out/grubenv" "$out/secure-boot.cer" ::/gopura/
 conf=${CONF:-}
 if [ -z "$conf" ] && [ -n "${RELEASE:-}" ]; then
 	conf=$out/gopura.conf

@@ -8,8 +8,8 @@
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
-#   KEYS=FOLDER     key.pem and cert.pem that sign updates, and provenance.key (default: build/image-keys, created if
-#                   missing)
+#   KEYS=FOLDER     key.pem and cert.pem that sign updates, loader.key, secure-boot.key and provenance.key (docs/image.md; default:
+#                   build/image-keys, created if missing)
 #   SEQUENCE=N      of this system and its update bundle: a terminal installs none with a lower number than one it found good
 #                   (default: the time of the commit, in seconds since 1970)
 #   TRACKER=FILE    of Debian's known vulnerabilities, or its address (default: that of security-tracker.debian.org); "no" for
@@ -75,13 +75,14 @@ if [ ! -f "$keys/key.pem" ]; then
 		-keyout "$keys/key.pem" -out "$keys/cert.pem" 2>/dev/null)
 	say "made keys for updates in $keys: keep a copy of key.pem in a safe place"
 fi
+KEYS=$keys image/loader-keys.sh make 2>/dev/null
 
 # ---- root, slot and disk; all files belong to root
 say "assembling the root"
 version_text=${VERSION:-$(git describe --always --dirty)}
 sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
 export here out keys triplet grub loader compatible cross programs version_text sequence slot_mib boot_mib esp_mib data_mib
-fakeroot image/assemble.sh
+KEYS=$keys fakeroot image/assemble.sh
 image/sbom.sh "$out/packages.txt" "$version_text" >"$out/sbom.spdx.json"
 image/bundle.sh "$out"
 KEYS=$keys MIRROR=$mirror VERSION=$version_text SEQUENCE=$sequence \

@@ -228,6 +228,24 @@ def updates(machine, sticks):
         machine.unplug()
 
 
+def changed(machine):
+    """With one changed byte in the root of the slot that runs, the other one starts. The byte tells when the file system was made: nothing but
+    its hash tree would notice."""
+    machine.stop()
+    where = next(part["start"] for part in table(machine.disk) if part["name"] == "gopura-root-b") * 512 + 8
+    with open(machine.disk, "r+b") as disk:
+        disk.seek(where)
+        byte = disk.read(1)[0]
+        disk.seek(where)
+        disk.write(bytes([byte ^ 1]))
+    machine = Appliance(machine.disk, machine.work, "changed")
+    try:
+        print(machine.said("verity: .*data block 0 is corrupted", BOOT_S))
+        print(machine.said("slot A, .* is good", BACK_S), "again")
+    finally:
+        machine.stop()
+
+
 def main():
     image, work = sys.argv[1:3]
     began = time.monotonic()
@@ -239,6 +257,7 @@ def main():
         visit(machine, began)
         if len(sys.argv) > 3:
             updates(machine, sys.argv[3])
+            changed(machine)
     finally:
         machine.stop()
     print(f"done in {time.monotonic() - began:.0f} s")

@@ -13,12 +13,13 @@ USB, UAS, BOARD = ["-device", "usb-storage,drive={}"], ["-device", "usb-uas,id=u
 OWN_RUNS = r"test: the root of own runs, /efi is of own, /var of own, links( {0}1)( {0}2)( {0}3)( {0}4)( {0}5)( {0}6)"
 NAMED = re.compile(OWN_RUNS.format(r"/dev/[sv]d[ab]"))
 REFUSED = re.compile(r"gopura: 2 disks say that they are the terminal's")
-SHORT = 3  # of the cases without "all"
+SHORT = 4  # of the cases without "all"
 CASES = [
     # name, {disk: where}, slot, what the loader says, what must be said
     ("a stick with the slots' names", {"stick": UAS, "own": USB}, "A", OWN + "4", NAMED),
     ("a stick with the disk's identities, the disk on the board", {"copy": UAS, "own": BOARD}, "A", OWN + "4", NAMED),
     ("a stick with the disk's identities, the disk on USB", {"copy": UAS, "own": USB}, "A", OWN + "4", REFUSED),
+    ("a changed byte in the root", {"changed": BOARD}, "A", OWN + "4", re.compile(r"verity: .*data block 0 is corrupted(?![\s\S]*test: the root)")),
     # The rest with "all" only.
     ("a stick with the slots' names, slot B", {"stick": UAS, "own": USB}, "B", OWN + "5", NAMED),
     ("an older loader, the disk on the board", {"stick": UAS, "own": BOARD}, "A", "", NAMED),

@@ -11,7 +11,7 @@ image=build/qemu-image/image work=build/qemu-disks
 mkdir -p "$work"
 tests/qemu/lib-image.sh "$image"
 
-# disk NAME: makes a disk whose slot, loader's partition and data partition print NAME
+# disk NAME IDENTITY: makes a disk whose slot, loader's partition and data partition print NAME
 disk() {
 	local tree=$work/tree disk=$work/$1.img
 	rm -rf "$tree" "$disk"
@@ -30,6 +30,7 @@ disk() {
 	I
 	chmod 755 "$tree/lib/systemd/systemd"
 	mksquashfs "$tree" "$work/root" -all-root -comp zstd -quiet -no-progress -noappend
+	image/verity.sh "$work/root" >"$work/$1.verity"
 	rm -rf "$work/data"
 	mkdir -p "$work/data"
 	echo "$1" >"$work/data/whose"
@@ -56,4 +57,14 @@ disk() {
 disk own 11111111
 disk stick 22222222
 disk copy 11111111
-exec python3 tests/qemu/disks.py "${BOOT:-$image/boot}" "$work" "$@"
+cp "$work/own.img" "$work/changed.img"
+printf x | dd of="$work/changed.img" bs=1 seek=$((43 * 1048576 + 8)) conv=notrunc status=none # when the file system was made
+# The initramfs of the image, which trusts the root of own instead: what is appended to it replaces its files.
+boot=${BOOT:-$image/boot}
+rm -rf "$work/boot"
+mkdir -p "$work/boot/early"
+cp "$work/own.verity" "$work/boot/early/verity"
+cp "$boot/vmlinuz" "$work/boot/"
+{ cat "$boot/initrd" && head -c $((-$(stat -c %s "$boot/initrd") & 3)) /dev/zero && (cd "$work/boot/early" && echo verity | cpio -o -H newc --quiet); } \
+	>"$work/boot/initrd"
+exec python3 tests/qemu/disks.py "$work/boot" "$work" "$@"

@@ -32,11 +32,12 @@ variant() {
 	cp --remove-destination "$image/tree/usr/lib/os-release" "$tree/usr/lib/os-release"
 	sed -i "s/^IMAGE_VERSION=.*/&-$name/; s/^IMAGE_SEQUENCE=.*/IMAGE_SEQUENCE=$sequence/" "$tree/usr/lib/os-release"
 	"$@" "$tree"
-	rm -f "$work/root.squashfs"
-	mksquashfs "$tree" "$work/root.squashfs" -all-root -comp zstd -Xcompression-level 1 -quiet -no-progress
-	ln -f "$image/boot.img" "$work/boot.img"
+	rm -rf "$work/early"
+	cp -a "$image/early" "$work/early"
+	ln -f "$image/vmlinuz" "$work/vmlinuz"
+	LEVEL=1 SOURCE_DATE_EPOCH=$sequence fakeroot image/slot.sh "$work"
 	SEQUENCE=$sequence VERSION=$(sed -n 's/^IMAGE_VERSION=//p' "$tree/usr/lib/os-release") image/bundle.sh "$work"
-	rm -rf "$tree"
+	rm -rf "$tree" "$work"/{early,boot,vmlinuz}
 	stick "$name" "$work/gopura.raucb"
 }
 unchanged() { :; }
