@@ -17,14 +17,17 @@ wait_for 60 "the first release" shown field 1
 
 # ---- another root, which the terminal's root keys did not sign, then the right one
 "$content" keys "$work/content" --keys "$keys" --tuf >/dev/null
-mv "$keys/tuf" "$work/right"
 "$content" keys "$work/content" --keys "$work/others" --tuf >/dev/null
-cp -a "$work/others/tuf" "$keys/tuf"
-publish "with a root of strangers"
+"$content" build "$work/content" --out "$work/strange" --keys "$work/others" >"$work/strange.log" 2>&1 ||
+	fail "a release of strangers: $(tail -n 1 "$work/strange.log")"
+cp -a "$release" "$work/exchanged"
+(release=$work/exchanged publish "whose root was exchanged")
+rm -rf "$work/exchanged/tuf"
+cp -a "$work/strange/tuf" "$release/tuf"
+cp -a "$work/exchanged/." "$release/"
 wait_for 60 "a release of the earlier form" shown field 2
 wait_for 30 "the refusal of a root of strangers" said field 'refused tuf/1.root.json: .*not signed by the root keys'
-rm -rf "$keys/tuf" "$release/tuf"
-mv "$work/right" "$keys/tuf"
+rm -rf "$release/tuf"
 publish "signed both ways"
 wait_for 60 "the release signed both ways" shown field 3
 wait_for 30 "going over" said field 'root 1 of The Update Framework is trusted from now on'
