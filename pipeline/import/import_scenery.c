@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 #include "pipeline/import/gltf_extensions.h"
 #include "pipeline/import/import_files.h"
@@ -84,7 +85,7 @@ static struct scenery_node node_of(uint32_t layer, const struct import_options *
 				     .layer = layer,
 				     .place = scenery_at_rest };
 
-	scenery_turn(node.place.turn, axes[options->up], degrees[options->up] * 0.017453293f);
+	turn_about(node.place.turn, axes[options->up], degrees[options->up] * 0.017453293f);
 	for (int k = 0; k < 3; k++)
 		node.place.scale[k] = unit;
 	return node;
@@ -110,19 +111,25 @@ static int add_vrml(struct scenery_maker *maker, struct scene_file *file, uint32
 	return rc;
 }
 
+static int read_gltf(struct gltf *out, struct scene_file *file, struct diagnostics *diagnostics)
+{
+	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
+	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+
+	return rc < 0 ? rc
+		      : gltf_read(out, buffer_bytes(&file->bytes), file->path, &options,
+				  diagnostics);
+}
+
 static int add_gltf(struct scenery_maker *maker, struct scene_file *file, uint32_t node,
 		    const struct import_scene *which, struct diagnostics *diagnostics,
 		    struct diagnostics *warnings)
 {
-	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
 	const struct gltf_choice choice = { .scene = which->name,
 					    .plays_always = which->plays_always };
 	struct gltf gltf = { 0 };
-	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+	int rc = read_gltf(&gltf, file, diagnostics);
 
-	if (rc == 0)
-		rc = gltf_read(&gltf, buffer_bytes(&file->bytes), file->path, &options,
-			       diagnostics);
 	if (rc == 0)
 		rc = gltf_scenery_add(maker, &gltf, node, &choice, warnings);
 	gltf_finish(&gltf);
@@ -150,17 +157,12 @@ int import_scenery(struct scenery_maker *maker, const char *path, uint32_t layer
 
 /* ---- views */
 
-/* Turns a place of the file into the site's: v + 2 w (q x v) + 2 q x (q x v). */
+/* Turns a place of the file into the site's. */
 static void to_site(float out[3], const struct scenery_place *place, const float at[3])
 {
-	float scaled[3], once[3], twice[3];
-
 	for (int k = 0; k < 3; k++)
-		scaled[k] = place->scale[k] * at[k];
-	vec_cross(once, place->turn, scaled);
-	vec_cross(twice, place->turn, once);
-	for (int k = 0; k < 3; k++)
-		out[k] = scaled[k] + 2 * (place->turn[3] * once[k] + twice[k]);
+		out[k] = place->scale[k] * at[k];
+	turn_vector(out, place->turn, out);
 }
 
 static bool is_near(const float at_m[3])
@@ -216,13 +218,9 @@ static int read_vrml_views(struct scene_views *out, struct scene_file *file,
 static int read_gltf_views(struct scene_views *out, struct scene_file *file, const char *scene,
 			   const char *name, struct diagnostics *diagnostics)
 {
-	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
 	struct gltf gltf = { 0 };
-	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+	int rc = read_gltf(&gltf, file, diagnostics);
 
-	if (rc == 0)
-		rc = gltf_read(&gltf, buffer_bytes(&file->bytes), file->path, &options,
-			       diagnostics);
 	if (rc == 0)
 		rc = gltf_views_read(out, &gltf, scene, name);
 	gltf_finish(&gltf);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 #include "pipeline/scene/vrml_graph.h"
 
@@ -134,24 +135,10 @@ int gltf_place(struct scenery_place *out, const struct gltf *gltf, const cJSON *
 
 void gltf_place_below(float out[16], const float parent[16], const struct scenery_place *place)
 {
-	const float *q = place->turn;
-	float own[16] = { 1 - 2 * (q[1] * q[1] + q[2] * q[2]),
-			  2 * (q[0] * q[1] + q[2] * q[3]),
-			  2 * (q[0] * q[2] - q[1] * q[3]),
-			  0,
-			  2 * (q[0] * q[1] - q[2] * q[3]),
-			  1 - 2 * (q[0] * q[0] + q[2] * q[2]),
-			  2 * (q[1] * q[2] + q[0] * q[3]),
-			  0,
-			  2 * (q[0] * q[2] + q[1] * q[3]),
-			  2 * (q[1] * q[2] - q[0] * q[3]),
-			  1 - 2 * (q[0] * q[0] + q[1] * q[1]),
-			  0,
-			  place->move_m[0],
-			  place->move_m[1],
-			  place->move_m[2],
-			  1 };
+	float own[16] = { [15] = 1 };
 
+	turn_matrix(own, place->turn);
+	vec_copy(own + 12, place->move_m);
 	for (int i = 0; i < 12; i++)
 		own[i] *= place->scale[i / 4];
 	matrix_multiply(out, parent, own);

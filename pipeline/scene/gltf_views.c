@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geometry/turn.h"
 #include "pipeline/scene/gltf_nodes.h"
 #include "pipeline/scene/gltf_sampler.h"
 #include "pipeline/scene/vrml_graph.h"
@@ -129,8 +130,11 @@ static bool animation_moves(const struct search *search, const cJSON *animation,
 	enum part part;
 	uint32_t node;
 
-	cJSON_ArrayForEach(channel,
-			   channels) if (moves(search, channel, camera, &node, &part)) return true;
+	cJSON_ArrayForEach(channel, channels)
+	{
+		if (moves(search, channel, camera, &node, &part))
+			return true;
+	}
 	return false;
 }
 
@@ -241,7 +245,7 @@ static int value_at(float *value, const struct search *search, const struct chan
 					"a key turns node \"%.60s\" by numbers that are no turn; "
 					"export it anew",
 					gltf_name(node_of(search, channel->node)));
-		scene_turn_between(value, from, to, share);
+		turn_between(value, from, to, share);
 		return 0;
 	}
 	for (uint32_t k = 0; k < sampler->width; k++)

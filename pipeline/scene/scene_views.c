@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "geometry/turn.h"
 
 enum { VIEWS_MAX = 1 << 16 };
 
@@ -40,15 +41,13 @@ bool scene_moment_reaches(struct scene_moment moment, float key_time)
 int scene_views_add(struct scene_views *views, float time_s, const float place[16],
 		    const float position[3], const float turn[4])
 {
-	const float *q = turn;
-	/* Where -z goes by the turn. */
-	const float ahead[3] = { -2 * (q[0] * q[2] + q[3] * q[1]), -2 * (q[1] * q[2] - q[3] * q[0]),
-				 -(1 - 2 * (q[0] * q[0] + q[1] * q[1])) };
+	float ahead[3] = { 0, 0, -1 };
 	struct scene_view *view;
 	int rc = ARRAY_RESERVE(views->items, views->room, (uint64_t)views->count + 1, VIEWS_MAX);
 
 	if (rc < 0)
 		return rc;
+	turn_vector(ahead, turn, ahead);
 	view = &views->items[views->count++];
 	view->time_s = time_s;
 	for (int row = 0; row < 3; row++) {
@@ -69,19 +68,4 @@ void scene_views_finish(struct scene_views *views)
 		return;
 	free(views->items);
 	*views = (struct scene_views){ 0 };
-}
-
-void scene_turn_between(float out[4], const float a[4], const float b[4], float share)
-{
-	float dot = 0, angle, weights[2] = { 1 - share, share };
-
-	for (int k = 0; k < 4; k++)
-		dot += a[k] * b[k];
-	angle = acosf(fminf(fabsf(dot), 1));
-	if (angle > 1e-3f) {
-		weights[0] = sinf((1 - share) * angle) / sinf(angle);
-		weights[1] = sinf(share * angle) / sinf(angle);
-	}
-	for (int k = 0; k < 4; k++)
-		out[k] = weights[0] * a[k] + (dot < 0 ? -1 : 1) * weights[1] * b[k];
 }

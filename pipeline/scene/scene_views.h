@@ -45,7 +45,4 @@ must_check int scene_views_add(struct scene_views *views, float time_s, const fl
 			       const float position[3], const float turn[4]);
 void scene_views_finish(struct scene_views *views); /* NULL is fine */
 
-/* Turns the shorter way round, at an even speed: share 0 is a, 1 is b; unit quaternions. */
-void scene_turn_between(float out[4], const float a[4], const float b[4], float share);
-
 #endif

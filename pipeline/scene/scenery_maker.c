@@ -17,16 +17,6 @@ const struct scenery_place scenery_at_rest = { .turn = { 0, 0, 0, 1 },
 					       .scale = { 1, 1, 1 },
 					       .stretch = { 0, 0, 0, 1 } };
 
-void scenery_turn(float out[4], const float axis[3], float angle_rad)
-{
-	float unit[3] = { axis[0], axis[1], axis[2] };
-	float half = vec_normalise(unit) > 0 ? angle_rad / 2 : 0;
-
-	for (int k = 0; k < 3; k++)
-		out[k] = sinf(half) * unit[k];
-	out[3] = cosf(half);
-}
-
 int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node, uint32_t *number)
 {
 	struct scenery *out = &maker->out;

@@ -38,9 +38,6 @@ struct scenery_maker {
 extern const struct scenery_material scenery_plain;
 /* A place that changes nothing. */
 extern const struct scenery_place scenery_at_rest;
-/* Sets out to the quaternion of a turn about an axis of any length; one without a length turns
- * nothing. */
-void scenery_turn(float out[4], const float axis[3], float angle_rad);
 
 /* All return 0, -EFBIG: past a limit of format/scenery.h, or -ENOMEM. */
 

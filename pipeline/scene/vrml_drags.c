@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "geometry/turn.h"
 #include "pipeline/scene/vrml_graph.h"
 
 static const float far = 1e6f; /* limits beyond are mistakes */
@@ -56,7 +57,7 @@ static void read_sphere(struct scenery_drag *out, const struct vrml_node *node)
 	float rotation[4];
 
 	vrml_get_floats(rotation, node, "offset", 4, (const float[4]){ 0, 1, 0, 0 });
-	scenery_turn(out->offset, rotation, rotation[3]);
+	turn_about(out->offset, rotation, rotation[3]);
 }
 
 static bool is_near(const float *numbers, int count)

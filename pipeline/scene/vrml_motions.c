@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "geometry/turn.h"
 #include "pipeline/scene/vrml_bends.h"
 #include "pipeline/scene/vrml_drags.h"
 #include "pipeline/scene/vrml_graph.h"
@@ -70,7 +71,7 @@ static void set_value(float *out, const struct sink *sink, const float *from)
 {
 	switch (sink->target) {
 	case SCENERY_TURN:
-		scenery_turn(out, from, from[3]);
+		turn_about(out, from, from[3]);
 		break;
 	case SCENERY_OPACITY:
 		out[0] = fminf(fmaxf(1 - from[0], 0), 1);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/map.h"
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_image.h"
 #include "pipeline/scene/scenery_look.h"
@@ -140,7 +141,7 @@ static void get_turn(float out[4], const struct vrml_node *node, const char *fie
 	float rotation[4];
 
 	vrml_get_floats(rotation, node, field, 4, (const float[4]){ 0, 0, 1, 0 });
-	scenery_turn(out, rotation, rotation[3]);
+	turn_about(out, rotation, rotation[3]);
 }
 
 static void get_place(struct scenery_place *out, const struct vrml_node *node)

@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/map.h"
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 #include "pipeline/scene/scenery_maker.h"
 #include "pipeline/scene/vrml_graph.h"
@@ -165,7 +166,7 @@ static void own_turn(float out[4], const struct vrml_node *node)
 	float rotation[4];
 
 	vrml_get_floats(rotation, node, "orientation", 4, (const float[4]){ 0, 0, 1, 0 });
-	scenery_turn(out, rotation, rotation[3]);
+	turn_about(out, rotation, rotation[3]);
 }
 
 static int add_still(struct scene_views *out, const struct search *search)
@@ -226,9 +227,9 @@ static void turn_at(float out[4], const struct keys *keys, struct scene_moment m
 	const uint32_t at = find_key(keys->times, moment, &share);
 	const float *from = &keys->values->floats[4 * at], *to = share > 0 ? from + 4 : from;
 
-	scenery_turn(a, from, from[3]);
-	scenery_turn(b, to, to[3]);
-	scene_turn_between(out, a, b, share);
+	turn_about(a, from, from[3]);
+	turn_about(b, to, to[3]);
+	turn_between(out, a, b, share);
 }
 
 /* Writes the moments of all keys, each once, and both ends; returns how many. */

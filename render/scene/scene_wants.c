@@ -326,12 +326,10 @@ static void want_images(struct scene *scene)
 
 /* ---- the list */
 
-/* Where the eye may go is felt, not seen: after what improves the picture by two pixels a kilobyte.
- */
+/* Where the eye may go is felt, not seen: after what gains the picture two pixels a kilobyte. */
 enum { SOLID_PRIORITY = 328000 };
 
-/* What stands beside the scan is not known before it is here; it may fill a quarter of the picture.
- */
+/* What stands beside the scan may fill a quarter of the picture; nobody knows before it is here. */
 static uint32_t scenery_priority(const struct scene *scene, uint32_t bytes)
 {
 	return plan_priority(scene->view.picture_px / 4 * misplaced(INFINITY), bytes);
@@ -393,8 +391,7 @@ void scene_list_wants(struct scene *scene)
 	if (!scene->repository.ready && images)
 		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
-	/* Not while there is nothing better to ask for yet: a range that is under way is not held.
-	 */
+	/* Before, nothing better may be asked for yet, and a range under way is not held. */
 	if (scene_first_cut_is_here(scene))
 		want_surroundings(scene);
 	if (scene->has_hierarchy)

@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 
 /* A ray along a plane, or shorter than this, has no place on it. */
@@ -209,21 +210,6 @@ static void turn_to(float out[4], const float from[3], const float to[3])
 		out[k] /= length;
 }
 
-/* What b does, and then what a does. */
-static void multiply_turns(float out[4], const float a[4], const float b[4])
-{
-	float turned[4], length = 0;
-
-	vec_cross(turned, a, b);
-	for (int k = 0; k < 3; k++)
-		turned[k] += a[3] * b[k] + b[3] * a[k];
-	turned[3] = a[3] * b[3] - vec_dot(a, b);
-	for (int k = 0; k < 4; k++)
-		length += turned[k] * turned[k];
-	for (int k = 0; k < 4; k++)
-		out[k] = turned[k] / sqrtf(length);
-}
-
 static void move_on_sphere(struct drag *drag, const struct ray *ray)
 {
 	const float radius = vec_length(drag->begin);
@@ -237,7 +223,7 @@ static void move_on_sphere(struct drag *drag, const struct ray *ray)
 	if (vec_normalise(to) < least * radius)
 		return;
 	turn_to(turn, from, to);
-	multiply_turns(drag->value, turn, drag->offset);
+	turn_twice(drag->value, drag->offset, turn);
 }
 
 /* ---- any */
@@ -276,12 +262,12 @@ void drag_move(struct drag *drag, const struct scenery_drag *of, const float fro
 
 void drag_value(const struct drag *drag, const struct scenery_drag *of, float out[4])
 {
-	memcpy(out, drag->value, 4 * sizeof(*out));
-	if (of->kind == SCENERY_DRAG_CYLINDER) {
-		const float turn[4] = { 0, sinf(drag->value[0] / 2), 0, cosf(drag->value[0] / 2) };
+	static const float up[3] = { 0, 1, 0 };
 
-		memcpy(out, turn, sizeof(turn));
-	}
+	if (of->kind == SCENERY_DRAG_CYLINDER)
+		turn_about(out, up, drag->value[0]);
+	else
+		memcpy(out, drag->value, 4 * sizeof(*out));
 }
 
 void drag_end(struct drag *drag, const struct scenery_drag *of)

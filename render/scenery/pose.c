@@ -5,35 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/turn.h"
 #include "geometry/vec.h"
 
 static const float dissolve_ms = 900, appear_ms = 600;
 
 /* ---- values */
-
-/* Between two turns, the shorter way round at an even speed. */
-static void between_turns(float out[4], const float a[4], const float b[4], float share)
-{
-	float cosine = 0, sign = 1, from = 1 - share, to = share, length = 0;
-
-	for (int k = 0; k < 4; k++)
-		cosine += a[k] * b[k];
-	if (cosine < 0)
-		sign = -1;
-	cosine *= sign;
-	if (cosine < 0.9995f) {
-		const float angle = acosf(vec_least(cosine, 1));
-
-		from = sinf((1 - share) * angle) / sinf(angle);
-		to = sinf(share * angle) / sinf(angle);
-	}
-	for (int k = 0; k < 4; k++) {
-		out[k] = from * a[k] + to * sign * b[k];
-		length += out[k] * out[k];
-	}
-	for (int k = 0; k < 4 && length > 0; k++)
-		out[k] /= sqrtf(length);
-}
 
 void pose_value(const struct scenery *scenery, const struct scenery_track *track, float share,
 		float *out)
@@ -53,7 +30,7 @@ void pose_value(const struct scenery *scenery, const struct scenery_track *track
 	span = times[after] - times[after - 1];
 	part = span > 0 ? (share - times[after - 1]) / span : 1;
 	if (track->target == SCENERY_TURN) {
-		between_turns(out, &values[(after - 1) * 4], &values[after * 4], part);
+		turn_between(out, &values[(after - 1) * 4], &values[after * 4], part);
 		return;
 	}
 	for (uint32_t k = 0; k < width; k++) {
@@ -63,30 +40,14 @@ void pose_value(const struct scenery *scenery, const struct scenery_track *track
 	}
 }
 
-/* Sets the upper left of a matrix to a turn; the rest must be set. */
-static void set_turn(float m[16], const float q[4])
-{
-	const float x = q[0], y = q[1], z = q[2], w = q[3];
-
-	m[0] = 1 - 2 * (y * y + z * z);
-	m[1] = 2 * (x * y + z * w);
-	m[2] = 2 * (x * z - y * w);
-	m[4] = 2 * (x * y - z * w);
-	m[5] = 1 - 2 * (x * x + z * z);
-	m[6] = 2 * (y * z + x * w);
-	m[8] = 2 * (x * z + y * w);
-	m[9] = 2 * (y * z - x * w);
-	m[10] = 1 - 2 * (x * x + y * y);
-}
-
 void pose_matrix(float out[16], const struct scenery_place *place)
 {
 	float turn[16] = { [15] = 1 }, stretch[16] = { [15] = 1 }, back[16] = { [15] = 1 };
 	float scaled[16];
 	const float *c = place->centre_m;
 
-	set_turn(turn, place->turn);
-	set_turn(stretch, place->stretch);
+	turn_matrix(turn, place->turn);
+	turn_matrix(stretch, place->stretch);
 	for (int column = 0; column < 3; column++)
 		for (int row = 0; row < 3; row++)
 			back[4 * column + row] = place->scale[row] * stretch[4 * row + column];
