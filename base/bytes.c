@@ -297,7 +297,7 @@ int buffer_read_foreign(struct buffer *out, const char *path)
 	return buffer_read_beneath(out, folder, slash + 1);
 }
 
-int bytes_fill_file(int fd, struct bytes bytes)
+int bytes_write_to(int fd, struct bytes bytes)
 {
 	size_t done = 0;
 
@@ -308,7 +308,14 @@ int bytes_fill_file(int fd, struct bytes bytes)
 		if (put > 0)
 			done += (size_t)put;
 	}
-	return fsync(fd) < 0 ? -errno : 0;
+	return 0;
+}
+
+int bytes_fill_file(int fd, struct bytes bytes)
+{
+	const int rc = bytes_write_to(fd, bytes);
+
+	return rc == 0 && fsync(fd) < 0 ? -errno : rc;
 }
 
 int bytes_sync_folder_of(const char *path)

@@ -97,7 +97,9 @@ enum { BYTES_PATH_MAX = 4096 };
 /* Begins to replace a file: creates a temporary file beside path, and writes its name to temporary.
  * Returns its descriptor, owned by the caller, or a negative errno. */
 must_check int bytes_begin_file(char temporary[BYTES_PATH_MAX], const char *path);
-/* Writes all bytes to a descriptor and calls fsync. Returns 0 or a negative errno. */
+/* Writes all bytes to a descriptor. Returns 0 or a negative errno. */
+must_check int bytes_write_to(int fd, struct bytes bytes);
+/* The same, and calls fsync. */
 must_check int bytes_fill_file(int fd, struct bytes bytes);
 /* Ends it: closes fd and renames the temporary file to path, so path is replaced only when the new
  * file is complete. If rc is negative, because writing failed, removes it and returns rc. Does not

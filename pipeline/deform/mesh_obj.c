@@ -6,13 +6,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "base/bytes.h"
+#include "base/chunk_file.h"
 #include "base/spill.h"
 #include "format/picture.h"
 
-enum { CHUNK_BYTES = 1 << 20, PNG_BYTES_MAX = 1 << 30 };
+enum { PNG_BYTES_MAX = 1 << 30 };
 
 static bool is_colour(const struct mesh_texture *texture)
 {
@@ -92,92 +91,56 @@ static int write_materials(const struct mesh *mesh, const char *path, int stem)
 
 /* ---- the mesh */
 
-static int flush(struct buffer *chunk, FILE *file, size_t at_least)
+static void put_vertices(struct chunk_file *file, const struct mesh *mesh)
 {
-	if (chunk->error)
-		return chunk->error;
-	if (chunk->size < at_least || chunk->size == 0)
-		return 0;
-	if (fwrite(chunk->data, chunk->size, 1, file) != 1)
-		return errno ? -errno : -EIO;
-	buffer_clear(chunk);
-	return 0;
-}
-
-static int write_vertices(const struct mesh *mesh, FILE *file, struct buffer *chunk)
-{
-	int rc = 0;
-
-	for (uint32_t i = 0; i < mesh->vertex_count && rc == 0; i++) {
+	for (uint32_t i = 0; i < mesh->vertex_count && chunk_file_pass(file); i++) {
 		const float *at = mesh->positions[i];
 
-		buffer_print(chunk, "v %.9g %.9g %.9g\n", (double)at[0], (double)at[1],
+		buffer_print(&file->chunk, "v %.9g %.9g %.9g\n", (double)at[0], (double)at[1],
 			     (double)at[2]);
-		rc = flush(chunk, file, CHUNK_BYTES);
 		spill_pass(i);
 	}
-	for (uint32_t i = 0; mesh->uvs && i < mesh->vertex_count && rc == 0; i++) {
-		buffer_print(chunk, "vt %.9g %.9g\n", (double)mesh->uvs[i][0],
+	for (uint32_t i = 0; mesh->uvs && i < mesh->vertex_count && chunk_file_pass(file); i++) {
+		buffer_print(&file->chunk, "vt %.9g %.9g\n", (double)mesh->uvs[i][0],
 			     (double)mesh->uvs[i][1]);
-		rc = flush(chunk, file, CHUNK_BYTES);
 		spill_pass(i);
 	}
-	return rc;
 }
 
-static int write_triangles(const struct mesh *mesh, FILE *file, struct buffer *chunk)
+static void put_triangles(struct chunk_file *file, const struct mesh *mesh)
 {
-	int rc = 0, material = -1;
+	int material = -1;
 
-	for (uint32_t i = 0; i < mesh->triangle_count && rc == 0; i++) {
+	for (uint32_t i = 0; i < mesh->triangle_count && chunk_file_pass(file); i++) {
 		const uint32_t *corners = mesh->triangles[i];
 
 		if (mesh->materials && mesh->materials[i] != material) {
 			material = mesh->materials[i];
-			buffer_print(chunk, "usemtl m%d\n", material);
+			buffer_print(&file->chunk, "usemtl m%d\n", material);
 		}
-		buffer_put_text(chunk, "f");
+		buffer_put_text(&file->chunk, "f");
 		for (int k = 0; k < 3; k++)
 			if (mesh->uvs)
-				buffer_print(chunk, " %u/%u", corners[k] + 1, corners[k] + 1);
+				buffer_print(&file->chunk, " %u/%u", corners[k] + 1,
+					     corners[k] + 1);
 			else
-				buffer_print(chunk, " %u", corners[k] + 1);
-		buffer_put_text(chunk, "\n");
-		rc = flush(chunk, file, CHUNK_BYTES);
+				buffer_print(&file->chunk, " %u", corners[k] + 1);
+		buffer_put_text(&file->chunk, "\n");
 		spill_pass(i);
 	}
-	return rc;
 }
 
 static int write_obj(const struct mesh *mesh, const char *path, int stem)
 {
 	const char *name = name_in(path);
-	char temporary[BYTES_PATH_MAX];
-	struct buffer chunk;
-	FILE *file;
-	int fd = bytes_begin_file(temporary, path), copy, rc;
+	struct chunk_file file;
 
-	if (fd < 0)
-		return fd;
-	copy = dup(fd);
-	file = copy >= 0 ? fdopen(copy, "wb") : NULL;
-	rc = file ? 0 : -errno;
-	if (copy >= 0 && !file)
-		close(copy);
-	buffer_init(&chunk, 2 * CHUNK_BYTES);
-	errno = 0;
+	chunk_file_begin(&file, path);
 	if (mesh->texture_count > 0)
-		buffer_print(&chunk, "mtllib %.*s.mtl\n", stem - (int)(name - path), name);
-	if (rc == 0)
-		rc = write_vertices(mesh, file, &chunk);
-	if (rc == 0)
-		rc = write_triangles(mesh, file, &chunk);
-	if (rc == 0)
-		rc = flush(&chunk, file, 0);
-	if (file && fclose(file) != 0 && rc == 0)
-		rc = -errno;
-	buffer_finish(&chunk);
-	return bytes_end_file(fd, temporary, path, rc);
+		buffer_print(&file.chunk, "mtllib %.*s.mtl\n", stem - (int)(name - path), name);
+	put_vertices(&file, mesh);
+	put_triangles(&file, mesh);
+	return chunk_file_end(&file);
 }
 
 int mesh_obj_write(const struct mesh *mesh, const char *path)
