@@ -29,6 +29,8 @@ static int key_path(char path[PATH_MAX], const char *folder, enum meta_role role
 
 static const char key_mark[] = "gopura-key-1 ";
 
+enum { KEY_FILE_BYTES_MAX = 255 };
+
 static int complain(const char *path, int rc)
 {
 	log_error("pipeline", "%s: %s", path, strerror(-rc));
@@ -168,39 +170,52 @@ static int make_folders(const char *folder)
 	return 0;
 }
 
-static int read_key(struct signing_key *key, const char *folder, enum meta_role role)
+int keys_decode(struct signing_key *out, struct bytes file, const char *role)
 {
 	uint8_t seed[crypto_sign_SEEDBYTES];
-	char path[PATH_MAX], text[256] = { 0 }, start[64];
+	char text[KEY_FILE_BYTES_MAX + 1] = { 0 }, start[64];
+	const char *hex;
+	size_t got = 0;
+	int rc = 0;
+
+	if (file.size >= sizeof(text))
+		return -EBADMSG;
+	memcpy(text, file.data, file.size);
+	snprintf(start, sizeof(start), "%s%s", key_mark, role ? role : "");
+	hex = strrchr(text, ' ');
+	if (strncmp(text, start, strlen(start)) != 0 || !hex ||
+	    (role && hex != text + strlen(start)) ||
+	    sodium_hex2bin(seed, sizeof(seed), hex + 1, strcspn(hex + 1, "\n"), NULL, &got, NULL) !=
+		    0 ||
+	    got != sizeof(seed))
+		rc = -EBADMSG;
+	else
+		crypto_sign_seed_keypair(out->public_key, out->secret, seed);
+	sodium_memzero(text, sizeof(text));
+	sodium_memzero(seed, sizeof(seed));
+	return rc;
+}
+
+static int read_key(struct signing_key *key, const char *folder, enum meta_role role)
+{
+	char path[PATH_MAX];
 	struct buffer file;
 	struct stat stat_of;
-	size_t got = 0, skip;
 	int rc = key_path(path, folder, role);
 
 	if (rc < 0)
 		return rc;
-	buffer_init(&file, sizeof(text) - 1);
+	buffer_init(&file, KEY_FILE_BYTES_MAX);
 	rc = buffer_read_file(&file, path);
 	if (rc == 0 && stat(path, &stat_of) == 0 && (stat_of.st_mode & 077)) {
 		log_error("pipeline", "%s: others may read this key; run chmod 600 on it", path);
 		buffer_finish(&file);
 		return -EPERM;
 	}
-	if (rc == 0) {
-		memcpy(text, file.data, file.size);
-		skip = (size_t)snprintf(start, sizeof(start), "%s%s ", key_mark, role_names[role]);
-		if (strncmp(text, start, skip) != 0 ||
-		    sodium_hex2bin(seed, sizeof(seed), text + skip, strcspn(text + skip, "\n"),
-				   NULL, &got, NULL) != 0 ||
-		    got != sizeof(seed))
-			rc = -EBADMSG;
-		else
-			crypto_sign_seed_keypair(key->public_key, key->secret, seed);
-	}
+	if (rc == 0)
+		rc = keys_decode(key, buffer_bytes(&file), role_names[role]);
 	if (file.data)
 		sodium_memzero(file.data, file.size);
-	sodium_memzero(text, sizeof(text));
-	sodium_memzero(seed, sizeof(seed));
 	buffer_finish(&file);
 	return rc < 0 ? complain(path, rc) : 0;
 }

@@ -25,6 +25,9 @@ must_check int keys_make(const char *folder);
 bool keys_are_in(const char *folder);
 /* Returns whether the open file is one of these keys. */
 bool keys_is_key_file(int fd);
+/* Reads the text of one. role: whose it must be; NULL: anybody's. The caller wipes *out. -EBADMSG.
+ */
+must_check int keys_decode(struct signing_key *out, struct bytes file, const char *role);
 /* Makes changes in this folder survive a power cut. Errors are logged. */
 must_check int keys_sync_folder(const char *folder);
 /* The same for the folder that contains this one. */

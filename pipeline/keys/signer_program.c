@@ -16,23 +16,14 @@ extern char **environ;
 
 static int message_file(struct bytes message)
 {
-	int fd = memfd_create("gopura-message", MFD_CLOEXEC);
-	size_t at = 0;
+	const int fd = memfd_create("gopura-message", MFD_CLOEXEC);
+	int rc = fd < 0 ? -errno : bytes_write_to(fd, message);
 
-	while (fd >= 0 && at < message.size) {
-		const ssize_t put = write(fd, message.data + at, message.size - at);
-
-		if (put < 0) {
-			const int rc = -errno;
-
-			close(fd);
-			return rc;
-		}
-		at += (size_t)put;
-	}
-	if (fd >= 0 && lseek(fd, 0, SEEK_SET) == 0)
-		return fd;
-	return -errno;
+	if (rc == 0 && lseek(fd, 0, SEEK_SET) < 0)
+		rc = -errno;
+	if (rc < 0 && fd >= 0)
+		close(fd);
+	return rc < 0 ? rc : fd;
 }
 
 /* Reads until the program closes its output. */

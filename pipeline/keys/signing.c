@@ -74,29 +74,19 @@ int signing_read(struct signing *out, const char *folder)
 
 /* ---- one signer */
 
-/* Signs with a file "gopura-key-1 ROLE HEX". */
-static int sign_with_seed(struct buffer *out, const struct buffer *file, struct bytes message)
+/* Signs with a key of gopura, whatever its role: the root says what it may sign. */
+static int sign_with_seed(struct buffer *out, struct bytes file, struct bytes message)
 {
-	uint8_t seed[crypto_sign_SEEDBYTES], secret[crypto_sign_SECRETKEYBYTES],
-		public_key[crypto_sign_PUBLICKEYBYTES], signature[crypto_sign_BYTES];
-	const char *text = (const char *)file->data;
-	size_t end = file->size, got = 0;
-	const char *hex;
+	uint8_t signature[crypto_sign_BYTES];
+	struct signing_key key;
+	int rc = keys_decode(&key, file, NULL);
 
-	while (end > 0 && text[end - 1] == '\n')
-		end--;
-	hex = memrchr(text, ' ', end);
-	if (!hex ||
-	    sodium_hex2bin(seed, sizeof(seed), hex + 1, (size_t)(text + end - hex - 1), NULL, &got,
-			   NULL) != 0 ||
-	    got != sizeof(seed))
-		return -EBADMSG;
-	crypto_sign_seed_keypair(public_key, secret, seed);
-	crypto_sign_detached(signature, NULL, message.data, message.size, secret);
-	sodium_memzero(seed, sizeof(seed));
-	sodium_memzero(secret, sizeof(secret));
-	buffer_put(out, signature, sizeof(signature));
-	return out->error;
+	if (rc == 0) {
+		crypto_sign_detached(signature, NULL, message.data, message.size, key.secret);
+		buffer_put(out, signature, sizeof(signature));
+	}
+	sodium_memzero(&key, sizeof(key));
+	return rc < 0 ? rc : out->error;
 }
 
 /* fd is closed. */
@@ -110,7 +100,7 @@ static int sign_with_key(struct buffer *out, int fd, struct bytes message)
 	rc = buffer_read_fd(&file, fd);
 	close(fd);
 	if (rc == 0)
-		rc = is_seed ? sign_with_seed(out, &file, message)
+		rc = is_seed ? sign_with_seed(out, buffer_bytes(&file), message)
 			     : tuf_private_sign(out, buffer_bytes(&file), message);
 	if (file.data)
 		sodium_memzero(file.data, file.size);
