@@ -314,38 +314,40 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	CHECK(!is_written(&s));
 }
 
+static void read_version(struct scenery *out, const char *path, uint8_t version)
+{
+	struct buffer file;
+
+	buffer_init(&file, 1 << 20);
+	CHECK(buffer_read_file(&file, path) == 0 && file.data[4] == version);
+	CHECK(scenery_decode(out, buffer_bytes(&file)) == 0);
+	buffer_finish(&file);
+}
+
 /* The glass of the fuzzer's corpus was written by the second version. */
 static void reads_what_was_published_before_there_were_shapes(void **state)
 {
 	struct scenery back;
-	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, 1 << 20);
-	CHECK(buffer_read_file(&file, "tests/fuzz/corpus/scenery/glass") == 0);
-	CHECK(file.data[4] == 2 && scenery_decode(&back, buffer_bytes(&file)) == 0);
+	read_version(&back, "tests/fuzz/corpus/scenery/glass", 2);
 	CHECK(back.mesh_count > 0 && back.drag_count == 0 && back.meshes[0].shape_count == 0);
 	scenery_finish(&back);
-	buffer_finish(&file);
 }
 
 /* The door of the fuzzer's corpus was written by the first version. */
 static void reads_what_was_published_before_there_were_materials(void **state)
 {
 	struct scenery back;
-	struct buffer file;
 
 	(void)state;
-	buffer_init(&file, 1 << 20);
-	CHECK(buffer_read_file(&file, "tests/fuzz/corpus/scenery/door") == 0);
-	CHECK(file.data[4] == 1 && scenery_decode(&back, buffer_bytes(&file)) == 0);
+	read_version(&back, "tests/fuzz/corpus/scenery/door", 1);
 	CHECK(back.material_count == 2 && back.mesh_count == 2);
 	for (uint32_t i = 0; i < 2; i++)
 		CHECK(back.materials[i].has_two_sides == (i == 1) &&
 		      back.materials[i].opacity == 1 && !back.materials[i].by_pixel);
 	CHECK(back.meshes[0].material == 1 && back.fog.range_m == 0);
 	scenery_finish(&back);
-	buffer_finish(&file);
 }
 
 int main(void)
