@@ -30,12 +30,16 @@ enum {
 	TURN_BYTES_MIN = 16 << 10,
 	RANGES_A_TURN = 4,
 	RANGE_BYTES_MAX = 1 << 20,
+	/* An object of more than so many ranges is requested in segments, each as large as a range.
+	 */
+	RANGES_AN_OBJECT = 2,
 	LATER_BYTES_MIN = 64 << 10, /* a range for later, however low its rate */
 	/* of the waiting time, what the most urgent object may wait for others of its range */
 	AHEAD_SHARE = 10,
 	WAIT_MS = 500,
 	FIRST_BYTES_PER_S = 1 << 20, /* assumed before the line was measured */
 	CACHE_READS_MAX = 64,        /* per call: other sources share the loop */
+	ITEMS_MAX = 1 << 20,         /* of one plan */
 };
 
 struct downloader {
@@ -139,9 +143,15 @@ void downloader_clear(struct downloader *downloader)
 static void pass_on(struct downloader *downloader, struct want *want, struct bytes bytes)
 {
 	struct hash hash = want->asked.hash;
+	struct segments *segments = want->segments;
 
+	/* The stick may have the object while segments of it are on their way. */
+	if (ranges_leave(&downloader->ranges, want))
+		downloader->plan_changed = true;
+	want->segments = NULL; /* bytes may be theirs */
 	want_set_remove(&downloader->wants, want);
 	downloader->options.events.object(downloader->options.data, hash, bytes);
+	segments_destroy(segments);
 }
 
 static void put_into_cache(struct downloader *downloader, const struct want *want,
@@ -161,6 +171,8 @@ static void note_damage(struct downloader *downloader, struct want *want)
 	char hex[HASH_HEX_BYTES];
 
 	downloader->counters.damaged++;
+	if (want->segments)
+		segments_forget(want->segments);
 	want->damages++;
 	want->failures++;
 	want->retry_at_ms = clock_now_ms();
@@ -179,10 +191,16 @@ static void note_damage(struct downloader *downloader, struct want *want)
 }
 
 /* See ranges_options.object. */
-static void on_range_object(void *data, struct want *want, struct hash hash, struct bytes bytes)
+static void on_range_object(void *data, struct want *want, uint32_t segment, struct hash hash,
+			    struct bytes bytes)
 {
 	struct downloader *downloader = data;
 
+	if (want && want->segments) {
+		if (!segments_put(want->segments, segment, bytes))
+			return;
+		bytes = segments_bytes(want->segments);
+	}
 	if (!hash_equal(hash_of(bytes), hash)) {
 		if (want)
 			note_damage(downloader, want);
@@ -317,6 +335,71 @@ void downloader_look_up_again(struct downloader *downloader)
 
 /* ---- the server */
 
+/* Returns the bytes of a turn: what is asked for and not here yet, of what is equally urgent. */
+static uint64_t turn_bytes(const struct downloader *downloader)
+{
+	uint64_t bytes = line_rate_carries(&downloader->line, downloader->wait_ms);
+
+	return bytes > TURN_BYTES_MIN ? bytes : TURN_BYTES_MIN;
+}
+
+/* Limits for a range whose most urgent object has this priority. */
+static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
+{
+	const uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
+	const uint64_t ahead = turn_bytes(downloader) / AHEAD_SHARE;
+	uint64_t most = turn_bytes(downloader) / RANGES_A_TURN;
+
+	if (rate > 0 && rate < most)
+		most = rate < LATER_BYTES_MIN ? LATER_BYTES_MIN : rate;
+	if (most > RANGE_BYTES_MAX)
+		most = RANGE_BYTES_MAX;
+	return (struct range_limits){ .gap_bytes = GAP_BYTES,
+				      .most_bytes = (uint32_t)most,
+				      .ahead_bytes = (uint32_t)ahead };
+}
+
+/* Divides an object that would fill the line for too long. Without memory for that it stays
+ * whole. */
+static void divide(const struct downloader *downloader, struct want *want, uint32_t size)
+{
+	const uint32_t most = limits_now(downloader, want->asked.priority).most_bytes;
+
+	if (!want->segments && size > most * RANGES_AN_OBJECT &&
+	    segments_create(&want->segments, size, most) < 0)
+		log_debug("net", "out of memory for the segments of an object");
+}
+
+static int add_item(struct downloader *downloader, size_t *count, const struct range_item *item)
+{
+	int rc = ARRAY_RESERVE(downloader->items, downloader->item_room, *count + 1, ITEMS_MAX);
+
+	if (rc == 0)
+		downloader->items[(*count)++] = *item;
+	return rc;
+}
+
+/* Adds the object at this place, or the segments of it that are lacking. */
+static int add_items(struct downloader *downloader, size_t *count, struct range_item item)
+{
+	struct want *want = item.want;
+	const struct segments *segments = want->segments;
+	const uint64_t place = item.place;
+	int rc = 0;
+
+	if (!segments)
+		return add_item(downloader, count, &item);
+	for (uint32_t n = 0; n < segments->count && rc == 0; n++) {
+		if (segments->states[n] != SEGMENT_LACKING)
+			continue;
+		item.place = place + (uint64_t)n * segments->bytes_each;
+		item.size = segments_size(segments, n);
+		item.segment = n;
+		rc = add_item(downloader, count, &item);
+	}
+	return rc;
+}
+
 /* Collects all wants that could be requested now into items, sorted by place. Returns their
  * count. */
 static size_t gather(struct downloader *downloader)
@@ -327,11 +410,8 @@ static size_t gather(struct downloader *downloader)
 
 	downloader->plan_due_ms = INT64_MAX;
 	downloader->later_waits = false;
-	if (ARRAY_RESERVE(downloader->items, downloader->item_room,
-			  want_set_count(&downloader->wants), WANTS_MAX) < 0)
-		return 0;
 	while ((want = want_set_next(&downloader->wants, &at))) {
-		struct range_item *item = &downloader->items[count];
+		struct range_item item;
 		int rc;
 
 		if (want->state != WANT_WAITING)
@@ -343,17 +423,19 @@ static size_t gather(struct downloader *downloader)
 		}
 		rc = want->retry_at_ms > now_ms ? -EBUSY
 						: locators_find(&downloader->locators, &want->asked,
-								want->failures, item);
+								want->failures, &item);
 		if (rc == -ENOENT)
 			on_failed(downloader, want, rc);
 		if (want->retry_at_ms > now_ms && want->retry_at_ms < downloader->plan_due_ms)
 			downloader->plan_due_ms = want->retry_at_ms;
 		if (rc < 0)
 			continue;
-		item->priority = want->asked.priority;
-		item->order = want->order;
-		item->want = want;
-		count++;
+		item.priority = want->asked.priority;
+		item.order = want->order;
+		item.want = want;
+		divide(downloader, want, item.size);
+		if (add_items(downloader, &count, item) < 0)
+			break; /* of no more memory; the others follow later */
 	}
 	range_sort(downloader->items, count);
 	return count;
@@ -371,14 +453,6 @@ static bool may_request(const struct downloader *downloader, uint32_t priority)
 	if (priority >= MESSAGE_PRIORITY_INDEX)
 		most += RANGES_FOR_PAGES;
 	return downloader->ranges.count < most && link_may_request(downloader->options.link);
-}
-
-/* Returns the bytes of a turn: what is asked for and not here yet, of what is equally urgent. */
-static uint64_t turn_bytes(const struct downloader *downloader)
-{
-	uint64_t bytes = line_rate_carries(&downloader->line, downloader->wait_ms);
-
-	return bytes > TURN_BYTES_MIN ? bytes : TURN_BYTES_MIN;
 }
 
 /* Returns whether a range of so many bytes is part of this turn. What is less urgent does not
@@ -414,22 +488,6 @@ static uint32_t later_bytes(const struct range_item *items, size_t count)
 		if (is_for_later(items[i].priority))
 			bytes += items[i].size;
 	return bytes;
-}
-
-/* Limits for a range whose most urgent object has this priority. */
-static struct range_limits limits_now(const struct downloader *downloader, uint32_t priority)
-{
-	const uint64_t rate = is_for_later(priority) ? downloader->options.rate_limit : 0;
-	const uint64_t ahead = turn_bytes(downloader) / AHEAD_SHARE;
-	uint64_t most = turn_bytes(downloader) / RANGES_A_TURN;
-
-	if (rate > 0 && rate < most)
-		most = rate < LATER_BYTES_MIN ? LATER_BYTES_MIN : rate;
-	if (most > RANGE_BYTES_MAX)
-		most = RANGE_BYTES_MAX;
-	return (struct range_limits){ .gap_bytes = GAP_BYTES,
-				      .most_bytes = (uint32_t)most,
-				      .ahead_bytes = (uint32_t)ahead };
 }
 
 static void request_ranges(struct downloader *downloader)

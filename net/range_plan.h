@@ -19,8 +19,9 @@ struct range_item {
 	uint32_t size;  /* bytes */
 	uint32_t priority;
 	uint64_t order; /* a lower value was wanted earlier */
-	void *want;     /* belongs to the caller */
-	bool taken;     /* used by an earlier plan: ignored */
+	void *want;     /* belongs to the caller, like segment */
+	uint32_t segment;
+	bool taken; /* used by an earlier plan: ignored */
 };
 
 struct range_limits {

@@ -13,6 +13,7 @@ struct slot {
 	uint64_t place;
 	uint32_t size;
 	struct want *want; /* NULL: it left; its bytes are reported all the same */
+	uint32_t segment;  /* of a want in segments */
 };
 
 struct range {
@@ -56,8 +57,11 @@ static struct want *detach(struct slot *slot)
 	if (!want)
 		return NULL;
 	slot->want = NULL;
-	want->range = NULL;
-	want->state = WANT_WAITING;
+	want->in_flight--;
+	if (want->segments)
+		want->segments->states[slot->segment] = SEGMENT_LACKING;
+	else
+		want->state = WANT_WAITING;
 	return want;
 }
 
@@ -69,7 +73,8 @@ static void finish_slot(struct range *range, struct slot *slot)
 
 	if (want)
 		range->wanted--;
-	options->object(options->data, want, slot->hash, buffer_bytes(&range->object));
+	options->object(options->data, want, slot->segment, slot->hash,
+			buffer_bytes(&range->object));
 	buffer_clear(&range->object);
 	range->now++;
 }
@@ -134,10 +139,13 @@ static void fill_slots(struct range *range, const struct range_item *items, size
 	for (size_t i = 0; i < count; i++) {
 		struct want *want = items[i].want;
 
-		range->slots[i] =
-			(struct slot){ want->asked.hash, items[i].place, items[i].size, want };
-		want->range = range;
-		want->state = WANT_IN_FLIGHT;
+		range->slots[i] = (struct slot){ want->asked.hash, items[i].place, items[i].size,
+						 want, items[i].segment };
+		want->in_flight++;
+		if (want->segments)
+			want->segments->states[items[i].segment] = SEGMENT_IN_FLIGHT;
+		else
+			want->state = WANT_IN_FLIGHT;
 		if (want->asked.priority > range->priority)
 			range->priority = want->asked.priority;
 	}
@@ -197,21 +205,35 @@ uint64_t ranges_ahead(const struct ranges *ranges, uint32_t priority)
 	return sum;
 }
 
+/* Removes a want from one range. Returns true if the range has no wants any more. */
+static bool leave(struct range *range, const struct want *want)
+{
+	bool left = false;
+
+	for (size_t i = range->now; i < range->count; i++)
+		if (range->slots[i].want == want) {
+			detach(&range->slots[i]);
+			range->wanted--;
+			left = true;
+		}
+	return left && range->wanted == 0;
+}
+
 bool ranges_leave(struct ranges *ranges, struct want *want)
 {
-	struct range *range = want->range;
+	struct range *range, *next;
+	bool any = false;
 
-	if (!range)
-		return false;
-	for (size_t i = range->now; i < range->count; i++)
-		if (range->slots[i].want == want)
-			detach(&range->slots[i]);
-	if (--range->wanted > 0)
-		return false;
-	ranges->cancelled++;
-	http_cancel(range->request);
-	unlink_range(range);
-	return true;
+	for (range = ranges->first; range && want->in_flight > 0; range = next) {
+		next = range->next;
+		if (!leave(range, want))
+			continue;
+		ranges->cancelled++;
+		http_cancel(range->request);
+		unlink_range(range);
+		any = true;
+	}
+	return any;
 }
 
 void ranges_cancel_all(struct ranges *ranges)

@@ -13,8 +13,10 @@ struct ranges_options {
 	struct http *http; /* borrowed, like link */
 	struct link *link;
 	/* All bytes of an object have arrived, unchecked; they are borrowed for the call. want has
-	 * left the range and waits; NULL if it left earlier. No request may be made here. */
-	void (*object)(void *data, struct want *want, struct hash hash, struct bytes bytes);
+	 * left the range and waits; NULL if it left earlier. No request may be made here. Of a want
+	 * in segments, the bytes are those of this segment. */
+	void (*object)(void *data, struct want *want, uint32_t segment, struct hash hash,
+		       struct bytes bytes);
 	/* The range ended without this object; want has left it and waits. rc is that of
 	 * struct http_result; -ENOENT also if the answer was too short. */
 	void (*failed)(void *data, struct want *want, int rc);
@@ -37,12 +39,13 @@ void ranges_init(struct ranges *ranges, const struct ranges_options *options);
 void ranges_cancel_all(struct ranges *ranges);
 
 /* Requests items[0 .. count) with one range request. They are sorted, lie in one pack, and
- * item.want is the struct want that waits for each. -ENOMEM: the wants keep waiting. */
+ * item.want is the struct want that waits for each, or for its segment. -ENOMEM: the wants keep
+ * waiting. */
 must_check int ranges_request(struct ranges *ranges, const struct range_item *items, size_t count);
 /* Returns how many bytes are still to come of ranges that are at least as urgent: those that hold
  * an object of that priority, or of a higher one. */
 uint64_t ranges_ahead(const struct ranges *ranges, uint32_t priority);
-/* Removes a want from its range; it waits afterwards. A range without wants is cancelled. Returns
+/* Removes a want from all ranges; it waits afterwards. A range without wants is cancelled. Returns
  * true if that happened. Does nothing if the want is in no range. */
 bool ranges_leave(struct ranges *ranges, struct want *want);
 

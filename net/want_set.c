@@ -7,6 +7,12 @@
 
 #include "base/array.h"
 
+static void free_want(struct want *want)
+{
+	segments_destroy(want->segments);
+	free(want);
+}
+
 void want_set_finish(struct want_set *set)
 {
 	struct want *want;
@@ -14,9 +20,9 @@ void want_set_finish(struct want_set *set)
 
 	while ((want = map_next_pointer(&set->wants, &at)))
 		if (want->state != WANT_QUEUED)
-			free(want);
+			free_want(want);
 	for (uint32_t i = 0; i < set->queue_count; i++)
-		free(set->queue[i]);
+		free_want(set->queue[i]);
 	free(set->queue);
 	map_finish(&set->wants);
 	*set = (struct want_set){ .orders = set->orders };
@@ -85,7 +91,7 @@ void want_set_remove(struct want_set *set, struct want *want)
 	if (want->state == WANT_QUEUED)
 		want->removed = true;
 	else
-		free(want);
+		free_want(want);
 }
 
 /* Sorts the most urgent want to the end. */
@@ -109,7 +115,7 @@ struct want *want_set_dequeue(struct want_set *set)
 		want->state = WANT_WAITING;
 		if (!want->removed)
 			return want;
-		free(want);
+		free_want(want);
 	}
 	return NULL;
 }

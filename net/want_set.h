@@ -5,6 +5,7 @@
 
 #include "base/map.h"
 #include "format/message.h"
+#include "net/segments.h"
 
 enum { WANTS_MAX = 1 << 18 };
 
@@ -12,21 +13,20 @@ enum want_state {
 	WANT_QUEUED,    /* for its look-up in the cache */
 	WANT_WAITING,   /* for a request to the server; not before retry_at_ms */
 	WANT_ON_STICK,  /* the stick was asked and will answer */
-	WANT_IN_FLIGHT, /* part of a range request */
+	WANT_IN_FLIGHT, /* part of a range request; one in segments stays WANT_WAITING */
 };
-
-struct range; /* private to net/ranges.c */
 
 struct want {
 	struct message_want asked;
 	enum want_state state;
-	uint64_t order;      /* order of arrival; a lower one came earlier */
-	uint32_t failures;   /* answers in a row without the object, or with wrong bytes */
-	uint32_t damages;    /* how many of these had wrong bytes */
-	int64_t retry_at_ms; /* in state WANT_WAITING (clock_now_ms) */
-	int reported;        /* enum missing_reason that the kiosk knows of; -1: none */
-	bool removed;        /* no longer wanted, but still in the queue */
-	struct range *range; /* in state WANT_IN_FLIGHT; borrowed */
+	uint64_t order;            /* order of arrival; a lower one came earlier */
+	uint32_t failures;         /* answers in a row without the object, or with wrong bytes */
+	uint32_t damages;          /* how many of these had wrong bytes */
+	int64_t retry_at_ms;       /* in state WANT_WAITING (clock_now_ms) */
+	int reported;              /* enum missing_reason that the kiosk knows of; -1: none */
+	bool removed;              /* no longer wanted, but still in the queue */
+	struct segments *segments; /* owned; NULL: its object is requested as a whole */
+	uint32_t in_flight;        /* range requests that carry it, or a segment of it */
 };
 
 /* A zeroed struct is a valid empty set. */

@@ -5,7 +5,8 @@
 #include "net/downloader.h"
 #include "tests/net/fake_http.h"
 
-enum { OBJECTS = 6, OBJECT_BYTES = 300, ROOTS = 3, EVENTS_MAX = 60 };
+/* The last object is the whole pack, and comes in segments. */
+enum { OBJECTS = 6, WHOLE = OBJECTS - 1, OBJECT_BYTES = 3000, ROOTS = 3, EVENTS_MAX = 60 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -16,10 +17,17 @@ static struct {
 	struct metrics_refusal refusal;
 } world;
 
-static uint8_t pack[OBJECTS * OBJECT_BYTES];
+static uint8_t pack[WHOLE * OBJECT_BYTES];
 static struct hash names[OBJECTS];
 static const struct hash page = { { 9 } }, pack_name = { { 0xaa } };
 static struct buffer locator;
+
+static struct bytes object_bytes(int n)
+{
+	if (n == WHOLE)
+		return (struct bytes){ pack, sizeof(pack) };
+	return (struct bytes){ pack + n * OBJECT_BYTES, OBJECT_BYTES };
+}
 
 /* ---- in place of storage/cache.c: a SQLite file each time would be all that is done */
 
@@ -40,7 +48,7 @@ int cache_get(struct cache *cache, struct hash hash, uint32_t priority, struct b
 	buffer_clear(out);
 	if (n < 0 || !world.cached[n])
 		return -ENOENT;
-	buffer_put(out, pack + n * OBJECT_BYTES, OBJECT_BYTES);
+	buffer_put(out, object_bytes(n).data, object_bytes(n).size);
 	return out->error;
 }
 
@@ -137,7 +145,7 @@ static void answer(struct reader *in)
 		return;
 	switch (what % 4) {
 	case 0:
-		give_right(request, (size_t)size * 16);
+		give_right(request, (size_t)size * 64);
 		break;
 	case 1:
 		give(request, reader_bytes(in, size < reader_left(in) ? size : reader_left(in)));
@@ -178,10 +186,11 @@ static bool has_room(void *data)
 static void want(struct downloader *downloader, struct reader *in)
 {
 	const uint8_t n = reader_u8(in);
+	const struct bytes object = object_bytes(n % OBJECTS);
 	struct message_want want = { .hash = names[n % OBJECTS],
 				     .page = page,
-				     .offset = n % OBJECTS * OBJECT_BYTES,
-				     .size = OBJECT_BYTES,
+				     .offset = (uint32_t)(object.data - pack),
+				     .size = (uint32_t)object.size,
 				     .priority = reader_u16(in) * 20u };
 
 	if (n & 0x80) {
@@ -247,7 +256,7 @@ static void begin(void)
 	for (size_t i = 0; i < sizeof(pack); i++)
 		pack[i] = (uint8_t)(i * i / 7 + i / OBJECT_BYTES);
 	for (int i = 0; i < OBJECTS; i++)
-		names[i] = hash_of((struct bytes){ pack + i * OBJECT_BYTES, OBJECT_BYTES });
+		names[i] = hash_of(object_bytes(i));
 	buffer_init(&locator, 1 << 20);
 	locator_encode(&locator, &about);
 }
@@ -255,6 +264,7 @@ static void begin(void)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
 	struct downloader_options options = { .link = &world.link,
+					      .wait_ms = 1,
 					      .events = { on_object, on_missing, has_room } };
 	struct downloader *downloader;
 	struct reader in;

@@ -190,7 +190,7 @@ static void asks_for_the_best_first_and_for_few_at_once(void **state)
 	CHECK(server.asked[2].get.first == 18 * OBJECT_BYTES);
 }
 
-/* An object that fills a turn is under way alone; what is more urgent does not wait for it. */
+/* Segments of large objects fill a turn and no more; what is more urgent does not wait for them. */
 static void asks_for_one_turn_at_once(void **state)
 {
 	struct stage *stage = *state;
@@ -214,12 +214,111 @@ static void asks_for_one_turn_at_once(void **state)
 		downloader_want(stage->downloader, &large);
 	}
 	downloader_work(stage->downloader);
-	CHECK(server.count == 1 + 1);
+	CHECK(server.count == 1 + 4 && asked(0)->get.size == 128 << 10);
 	downloader_work(stage->downloader);
-	CHECK(server.count == 1 + 1 && downloader_due_ms(stage->downloader) > server.now_ms);
+	CHECK(server.count == 1 + 4 && downloader_due_ms(stage->downloader) > server.now_ms);
 	downloader_want(stage->downloader, &page);
 	downloader_work(stage->downloader);
-	CHECK(server.count == 1 + 2 && asked(0)->get.size == 500);
+	CHECK(server.count == 1 + 5 && asked(0)->get.size == 500);
+}
+
+/* The downloader anew, where a turn has so few bytes that the whole pack, one object, takes three:
+ * 12 segments. Returns the object's name. */
+static struct hash want_in_segments(struct stage *stage)
+{
+	struct downloader_options options = { .cache = stage->cache,
+					      .link = &stage->link,
+					      .wait_ms = 20,
+					      .events = { on_object, on_missing, has_room },
+					      .data = stage };
+	struct message_want large = { .page = stage->page,
+				      .size = sizeof(stage->pack),
+				      .priority = MESSAGE_PRIORITY_PICTURE };
+
+	downloader_destroy(stage->downloader);
+	CHECK(downloader_create(&stage->downloader, &options) == 0);
+	large.hash = hash_of((struct bytes){ stage->pack, sizeof(stage->pack) });
+	begin(stage);
+	downloader_want(stage->downloader, &large);
+	downloader_work(stage->downloader);
+	return large.hash;
+}
+
+static void answer(struct stage *stage, struct http_request *request)
+{
+	give(request, answer_to(stage, request));
+	end(request, 0);
+	downloader_work(stage->downloader);
+}
+
+static void asks_for_a_large_object_in_segments(void **state)
+{
+	struct stage *stage = *state;
+	const struct hash name = want_in_segments(stage);
+	struct downloader_counters counters;
+	size_t next = 1;
+
+	CHECK(server.count == 1 + 4 && asked(0)->get.size < sizeof(stage->pack) / 10);
+	answer(stage, &server.asked[2]); /* not the first */
+	CHECK(server.count == 1 + 5 && stage->objects == 0);
+	while (next < server.count) {
+		if (server.asked[next].open)
+			answer(stage, &server.asked[next]);
+		next++;
+	}
+	CHECK(stage->objects == 1 && hash_equal(stage->last, name) && server.count == 1 + 12);
+	downloader_counters(stage->downloader, &counters);
+	CHECK(counters.from_server == 1 && counters.ranges == 12);
+}
+
+static void keeps_the_segments_that_came_before_the_line_broke(void **state)
+{
+	struct stage *stage = *state;
+	size_t next = 1;
+
+	want_in_segments(stage);
+	answer(stage, &server.asked[1]);
+	while (next < server.count) {
+		if (server.asked[next].open)
+			end(&server.asked[next], -EHOSTUNREACH);
+		next++;
+	}
+	CHECK(stage->objects == 0 && server.count == 1 + 5);
+	server.now_ms += 120000;
+	downloader_work(stage->downloader);
+	for (; next < server.count; next++)
+		answer(stage, &server.asked[next]);
+	CHECK(stage->objects == 1 && server.count == 1 + 12 + 4);
+}
+
+static void starts_again_when_segments_are_not_the_object(void **state)
+{
+	struct stage *stage = *state;
+	struct downloader_counters counters;
+	size_t next = 1;
+
+	want_in_segments(stage);
+	stage->pack[40000] ^= 1;
+	for (; next < 1 + 12; next++)
+		answer(stage, &server.asked[next]);
+	stage->pack[40000] ^= 1;
+	downloader_counters(stage->downloader, &counters);
+	CHECK(stage->objects == 0 && counters.damaged == 1);
+	for (; next < server.count; next++)
+		answer(stage, &server.asked[next]);
+	CHECK(stage->objects == 1 && server.count == 1 + 24);
+}
+
+static void cancels_all_segments_of_what_is_dropped(void **state)
+{
+	struct stage *stage = *state;
+	const struct hash name = want_in_segments(stage);
+
+	answer(stage, &server.asked[1]);
+	downloader_drop(stage->downloader, name);
+	CHECK(server.cancelled == 4 && downloader_wanted(stage->downloader) == 0);
+	downloader_work(stage->downloader);
+	CHECK(server.count == 1 + 5);
 }
 
 /* The downloader anew, with a limit of 6000 bytes a second. */
@@ -564,6 +663,10 @@ int main(void)
 		STAGED(finds_in_the_cache_what_it_downloaded_before),
 		STAGED(asks_for_the_best_first_and_for_few_at_once),
 		STAGED(asks_for_one_turn_at_once),
+		STAGED(asks_for_a_large_object_in_segments),
+		STAGED(keeps_the_segments_that_came_before_the_line_broke),
+		STAGED(starts_again_when_segments_are_not_the_object),
+		STAGED(cancels_all_segments_of_what_is_dropped),
 		STAGED(keeps_to_its_rate_with_what_is_for_later),
 		STAGED(what_is_shown_has_no_rate),
 		STAGED(stops_when_the_kiosk_takes_no_more),

@@ -19,12 +19,14 @@ struct stage {
 	struct hash last_hash;
 };
 
-static void on_object(void *data, struct want *want, struct hash hash, struct bytes bytes)
+static void on_object(void *data, struct want *want, uint32_t segment, struct hash hash,
+		      struct bytes bytes)
 {
 	struct stage *stage = data;
 
+	(void)segment;
 	CHECK(bytes.size == OBJECT_BYTES && hash_equal(hash_of(bytes), hash));
-	CHECK(!want || (want->state == WANT_WAITING && !want->range));
+	CHECK(!want || (want->state == WANT_WAITING && want->in_flight == 0));
 	stage->objects++;
 	stage->last = want;
 	stage->last_hash = hash;
@@ -34,7 +36,7 @@ static void on_failed(void *data, struct want *want, int rc)
 {
 	struct stage *stage = data;
 
-	CHECK(want->state == WANT_WAITING && !want->range);
+	CHECK(want->state == WANT_WAITING && want->in_flight == 0);
 	stage->failed++;
 	stage->last = want;
 	stage->rc = rc;
