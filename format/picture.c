@@ -158,7 +158,8 @@ static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_mos
 	return rc;
 }
 
-int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality)
+static int encode_jpeg(struct buffer *out, const struct picture *picture, int quality,
+		       bool halves_colour)
 {
 	struct jpeg_compress_struct codec;
 	struct jpeg_failure failure;
@@ -179,6 +180,8 @@ int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int q
 	codec.in_color_space = JCS_EXT_RGBA;
 	jpeg_set_defaults(&codec);
 	jpeg_set_quality(&codec, quality, TRUE);
+	if (!halves_colour)
+		codec.comp_info[0].h_samp_factor = codec.comp_info[0].v_samp_factor = 1;
 	codec.optimize_coding = TRUE;
 	jpeg_start_compress(&codec, TRUE);
 	while (codec.next_scanline < codec.image_height) {
@@ -191,6 +194,16 @@ int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int q
 	buffer_put(out, encoded, encoded_bytes);
 	free(encoded);
 	return out->error;
+}
+
+int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality)
+{
+	return encode_jpeg(out, picture, quality, true);
+}
+
+int picture_encode_fine_jpeg(struct buffer *out, const struct picture *picture, int quality)
+{
+	return encode_jpeg(out, picture, quality, false);
 }
 
 static int decode(struct picture *out, struct bytes file, uint32_t side_most_px)

@@ -29,6 +29,9 @@ must_check int picture_decode_for_page(struct picture *out, struct bytes file);
 must_check int picture_encode_png(struct buffer *out, const struct picture *picture);
 /* As above. quality is 1..100; alpha is dropped. */
 must_check int picture_encode_jpeg(struct buffer *out, const struct picture *picture, int quality);
+/* The same with the colours as fine as the brightness, for pictures that are numbers. */
+must_check int picture_encode_fine_jpeg(struct buffer *out, const struct picture *picture,
+					int quality);
 void picture_finish(struct picture *picture); /* NULL and zeroed are fine */
 
 #endif

@@ -39,6 +39,11 @@ bool scenery_sets(const struct scenery *scenery, uint32_t node, enum scenery_tar
 	return false;
 }
 
+bool scenery_is_painted(const struct scenery_material *material)
+{
+	return material->texture > 0 || material->normals > 0;
+}
+
 uint32_t scenery_texels(const struct scenery *scenery)
 {
 	uint32_t count = 0;
@@ -132,12 +137,13 @@ static bool materials_are_sane(const struct scenery *scenery)
 		const struct scenery_material *material = &scenery->materials[i];
 		const uint8_t *rgb = material->specular;
 		const bool needs_pixels = material->substance || material->relief_m > 0 ||
-					  material->mirror > 0 || material->texture;
+					  material->mirror > 0 || scenery_is_painted(material);
 
 		if (!is_within(material->opacity, 1.0f / 255, 1) ||
 		    !is_within(material->shininess, rgb[0] || rgb[1] || rgb[2] ? 1 : 0, 128) ||
 		    material->substance >= SCENERY_SUBSTANCES ||
 		    material->texture > scenery->texture_count ||
+		    material->normals > scenery->texture_count ||
 		    !is_within(material->relief_m, 0, 0.1f) || !is_within(material->mirror, 0, 1) ||
 		    !is_unit(material->grain, 3) || (needs_pixels && !material->by_pixel))
 			return false;
@@ -162,7 +168,7 @@ static bool mesh_is_sane(const struct scenery *scenery, const struct scenery_mes
 	    mesh->triangle_count < 1 || mesh->triangle_count > SCENERY_TRIANGLES_MAX ||
 	    mesh->shape_count > SCENERY_SHAPES_MAX)
 		return false;
-	if ((scenery->materials[mesh->material].texture > 0) != (mesh->uvs != NULL) ||
+	if (scenery_is_painted(&scenery->materials[mesh->material]) != (mesh->uvs != NULL) ||
 	    !are_near(mesh->uv_origin, 2) || !are_near(mesh->uv_step, 2))
 		return false;
 	for (uint32_t t = 0; t < mesh->triangle_count; t++)

@@ -70,8 +70,11 @@ struct scenery_material {
 	uint8_t emissive[3]; /* sRGB; added to the colour, whatever the light */
 	uint8_t specular[3]; /* sRGB; of the highlight of the sun */
 	float shininess;     /* 1 to 128: exponent of the highlight, if specular is not black */
-	/* The next four need by_pixel. */
+	/* The next five need by_pixel. */
 	uint16_t texture; /* 1 + index of a picture, by which the colours are multiplied; 0: none */
+	/* 1 + index of a normal map: a picture whose red, green and blue, 0 to 1, are the normal
+	 * along the picture's right, its top and the mesh's own normal, -1 to 1; 0: none */
+	uint16_t normals;
 	uint8_t substance; /* enum substance_kind: its pattern is on the colours; 0: none */
 	/* Up to 0.1: how deep the dark places of the substance lie below the light ones; without a
 	 * substance, the hollows of hewn stone. */
@@ -116,7 +119,7 @@ struct scenery_mesh {
 	uint32_t vertex_count, triangle_count;
 	struct scenery_vertex *vertices; /* owned */
 	uint16_t (*triangles)[3];        /* owned; counter-clockwise seen from outside */
-	/* Of each vertex where the picture of the material lies: a place from its left and from its
+	/* Of each vertex where the pictures of the material lie: a place from its left and from its
 	 * top, each 1 wide = uv_origin + uv_step * uvs. Owned; NULL: the material has none. */
 	uint16_t (*uvs)[2];
 	float uv_origin[2], uv_step[2];
@@ -219,6 +222,8 @@ struct scenery {
 	struct scenery_fog fog;
 };
 
+/* Returns whether the material has a picture or a normal map, so that its meshes have uvs. */
+bool scenery_is_painted(const struct scenery_material *material);
 /* Returns how many numbers a key of the target has. */
 uint32_t scenery_width(enum scenery_target target);
 /* Returns whether the scenery keeps all rules of this header. */

@@ -11,8 +11,9 @@
 #include "format/scenery_texture_code.h"
 
 enum {
-	VERSION = 4,
-	VERSION_NO_TEXTURES = 3, /* without pictures; what has none is written so */
+	VERSION = 5,
+	VERSION_COLOURS = 4,     /* without normal maps; what has none is written so */
+	VERSION_NO_TEXTURES = 3, /* without pictures; likewise */
 	VERSION_STIFF = 2,       /* without shapes and drags */
 	VERSION_PLAIN = 1, /* without materials and fog; a mesh said whether it has two sides */
 	ZSTD_LEVEL = 19,
@@ -277,7 +278,7 @@ static int get_shapes(struct reader *in, struct scenery *scenery)
 
 /* ---- the whole */
 
-static void put_raw(struct buffer *out, const struct scenery *scenery)
+static void put_raw(struct buffer *out, const struct scenery *scenery, uint8_t version)
 {
 	buffer_put_u32(out, scenery->node_count);
 	buffer_put_u32(out, scenery->mesh_count);
@@ -300,12 +301,22 @@ static void put_raw(struct buffer *out, const struct scenery *scenery)
 	put_layers(out, scenery);
 	scenery_put_drags(out, scenery);
 	put_shapes(out, scenery);
-	if (scenery->texture_count > 0)
-		scenery_put_textures(out, scenery);
+	if (version > VERSION_NO_TEXTURES)
+		scenery_put_textures(out, scenery, version > VERSION_COLOURS);
+}
+
+/* The oldest version that says it all, so that older terminals read it. */
+static uint8_t version_of(const struct scenery *scenery)
+{
+	for (uint32_t i = 0; i < scenery->material_count; i++)
+		if (scenery->materials[i].normals > 0)
+			return VERSION;
+	return scenery->texture_count > 0 ? VERSION_COLOURS : VERSION_NO_TEXTURES;
 }
 
 int scenery_encode(struct buffer *out, const struct scenery *scenery)
 {
+	const uint8_t version = version_of(scenery);
 	struct buffer raw;
 	uint8_t *packed = NULL;
 	size_t size = 0, room;
@@ -314,7 +325,7 @@ int scenery_encode(struct buffer *out, const struct scenery *scenery)
 	if (!scenery_is_sane(scenery))
 		return -EINVAL;
 	buffer_init(&raw, RAW_BYTES_MAX);
-	put_raw(&raw, scenery);
+	put_raw(&raw, scenery, version);
 	rc = raw.error;
 	room = ZSTD_compressBound(raw.size);
 	if (rc == 0)
@@ -327,7 +338,7 @@ int scenery_encode(struct buffer *out, const struct scenery *scenery)
 		rc = -EFBIG;
 	if (rc == 0) {
 		buffer_put(out, magic, sizeof(magic));
-		buffer_put_u8(out, scenery->texture_count > 0 ? VERSION : VERSION_NO_TEXTURES);
+		buffer_put_u8(out, version);
 		buffer_put_u32(out, (uint32_t)raw.size);
 		buffer_put(out, packed, size);
 		rc = out->error;
@@ -412,8 +423,8 @@ static int get_raw(struct scenery *out, struct bytes raw, uint8_t version)
 		scenery_get_drags(&in, out);
 		rc = get_shapes(&in, out);
 	}
-	if (rc == 0 && version == VERSION)
-		rc = scenery_get_textures(&in, out);
+	if (rc == 0 && version > VERSION_NO_TEXTURES)
+		rc = scenery_get_textures(&in, out, version > VERSION_COLOURS);
 	if (rc == 0) {
 		if (in.failed || reader_left(&in) > 0 || !scenery_is_sane(out))
 			rc = -EBADMSG;

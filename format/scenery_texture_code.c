@@ -67,19 +67,21 @@ static int get_texture(struct reader *in, struct scenery_texture *texture)
 	return 0;
 }
 
-void scenery_put_textures(struct buffer *out, const struct scenery *scenery)
+void scenery_put_textures(struct buffer *out, const struct scenery *scenery, bool has_normals)
 {
 	buffer_put_u32(out, scenery->texture_count);
 	for (uint32_t i = 0; i < scenery->texture_count; i++)
 		put_texture(out, &scenery->textures[i]);
 	for (uint32_t i = 0; i < scenery->material_count; i++)
 		buffer_put_u16(out, scenery->materials[i].texture);
+	for (uint32_t i = 0; i < scenery->material_count && has_normals; i++)
+		buffer_put_u16(out, scenery->materials[i].normals);
 	for (uint32_t i = 0; i < scenery->mesh_count; i++)
-		if (scenery->materials[scenery->meshes[i].material].texture)
+		if (scenery_is_painted(&scenery->materials[scenery->meshes[i].material]))
 			put_uvs(out, &scenery->meshes[i]);
 }
 
-int scenery_get_textures(struct reader *in, struct scenery *scenery)
+int scenery_get_textures(struct reader *in, struct scenery *scenery, bool has_normals)
 {
 	const uint32_t count = reader_u32(in);
 	int rc = 0;
@@ -95,12 +97,14 @@ int scenery_get_textures(struct reader *in, struct scenery *scenery)
 		rc = get_texture(in, &scenery->textures[i]);
 	for (uint32_t i = 0; i < scenery->material_count; i++)
 		scenery->materials[i].texture = reader_u16(in);
+	for (uint32_t i = 0; i < scenery->material_count && has_normals; i++)
+		scenery->materials[i].normals = reader_u16(in);
 	for (uint32_t i = 0; i < scenery->mesh_count && rc == 0; i++) {
 		struct scenery_mesh *mesh = &scenery->meshes[i];
 
 		if (mesh->material >= scenery->material_count)
 			rc = -EBADMSG;
-		else if (scenery->materials[mesh->material].texture)
+		else if (scenery_is_painted(&scenery->materials[mesh->material]))
 			rc = get_uvs(in, mesh);
 	}
 	return rc;

@@ -127,6 +127,25 @@ static void add_relief(float normal[3], const struct scenery_material *material,
 	vec_normalise(normal);
 }
 
+/* Turns the normal of a place as its normal map does. The map is that of the front: a dent in it is
+ * a bump of the back. */
+static void add_map(float normal[3], const struct appearance_place *place)
+{
+	const float side = place->is_back ? -1 : 1;
+	float right[3], top[3], sum[3];
+
+	vec_add_scaled(right, place->right, -vec_dot(place->right, normal), normal);
+	vec_normalise(right);
+	vec_cross(top, normal, right);
+	if (vec_dot(top, place->top) < 0)
+		vec_scale(top, -1, top);
+	vec_scale(sum, place->map[2] * 2 - 1, normal);
+	vec_add_scaled(sum, sum, (place->map[0] * 2 - 1) * side, right);
+	vec_add_scaled(sum, sum, (place->map[1] * 2 - 1) * side, top);
+	vec_copy(normal, sum);
+	vec_normalise(normal);
+}
+
 /* ---- what is around */
 
 /* Sets where a direction meets the cube: a face, and coordinates from 0 to 1 (OpenGL ES 2.0, table
@@ -194,11 +213,13 @@ void appearance_colour(float rgb[3], const struct scenery_material *material,
 		for (int k = 0; k < 3; k++)
 			surface[k] *= place->surface[k] * solid->tint[k];
 	}
+	if (material->normals)
+		add_map(n, place);
 	if (material->relief_m > 0)
 		add_relief(n, material, solid, at, place->footprint_m);
 	if (light->is_lit)
 		shade = light_at(n, 1, light->sun);
-	else if (material->relief_m > 0)
+	else if (material->relief_m > 0 || material->normals)
 		shade = light_at(n, 1, light->sun) / light_at(place->normal, 1, light->sun);
 	shine = highlight(n, place->to_eye, light->sun, material->shininess);
 	if (material->mirror > 0 && light->around) {

@@ -2,16 +2,17 @@
  * in C, which is the truth, and in GLSL, which is compared with it (docs/materials.md).
  *
  *   surface   = own colour * substance / mean of the substance
- *   normal    = that of the mesh, less the slope of the relief
+ *   normal    = that of the mesh, or of the normal map, less the slope of the relief
  *   light     = light.h, with the whole sky open; where the model has the scan's own colours, what
- *               the relief changes of it
+ *               normal map and relief change of it
  *   highlight = min(1, 4 * max(0, n.sun)) * max(0, n.h) ^ shininess    h: half way between eye and
  * sun colour    = min(1, mix(surface * light + emissive, what is mirrored, mirror)
  *                      + specular * highlight)
  *   fog       = d / range, or 1 - exp(-d / (range - d))    d: distance from the eye; 1 beyond range
  *
  * Light, highlight and fog are the formulas of VRML97 (4.14.4) under the one sun that a release
- * has; the relief is Blinn's bump mapping (1978) in object space (paper 003, appendix A.2). All
+ * has; the relief is Blinn's bump mapping (1978) in object space (paper 003, appendix A.2), normal
+ * maps lie as in glTF 2.0 (3.9.3). All
  * colours are sRGB, 0 to 1, and not made linear, as in light.h. */
 #ifndef GOPURA_GEOMETRY_APPEARANCE_H
 #define GOPURA_GEOMETRY_APPEARANCE_H
@@ -33,10 +34,14 @@ struct appearance_light {
 
 /* A place on a surface. */
 struct appearance_place {
-	float surface[3];  /* its own colour */
-	float normal[3];   /* unit vector, on the side of the eye */
-	float to_eye[3];   /* unit vector */
-	float in_node[3];  /* in metres of the node */
+	float surface[3]; /* its own colour */
+	float normal[3];  /* unit vector, on the side of the eye */
+	float to_eye[3];  /* unit vector */
+	float in_node[3]; /* in metres of the node */
+	/* For a material with a normal map: what that has there, 0 to 1; ways in which its right
+	 * and its top lie, of any length; and whether normal is that of the back. */
+	float map[3], right[3], top[3];
+	bool is_back;
 	float footprint_m; /* side of a pixel there */
 };
 

@@ -7,8 +7,9 @@
 
 enum { GLB_HEAD_BYTES = 20, NAME_BYTES = 64 };
 
-/* Extensions that change neither places nor the base colour. */
-static const char *const harmless[] = { "KHR_materials_", "KHR_lights_punctual", "KHR_xmp" };
+/* Extensions that change neither places nor the base colour, and one that is read. */
+static const char *const harmless[] = { "KHR_materials_", "KHR_lights_punctual", "KHR_xmp",
+					"KHR_texture_transform" };
 
 static const struct {
 	const char *extension, *what, *command;

@@ -102,6 +102,48 @@ static bool plain_colour_of(const struct aiMaterial *material, struct import_for
 	return rgb[0] != 255 || rgb[1] != 255 || rgb[2] != 255;
 }
 
+/* How KHR_texture_transform of glTF moves texture coordinates. */
+struct uv_move {
+	bool is_there; /* else nothing moves, and all bits stay */
+	float offset[2], cosine, sine, scale[2];
+};
+
+/* assimp gives it about the middle of the picture, with v from the bottom and turned backwards. */
+static struct uv_move uv_move_of(const struct aiMaterial *material)
+{
+	struct uv_move move = { 0 };
+	struct aiUVTransform about_middle;
+	float c, s, x, y;
+
+	if (aiGetMaterialUVTransform(material, AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0),
+				     &about_middle) != aiReturn_SUCCESS)
+		return move;
+	c = cosf(-about_middle.mRotation);
+	s = sinf(-about_middle.mRotation);
+	x = about_middle.mScaling.x;
+	y = about_middle.mScaling.y;
+	move = (struct uv_move){ true,
+				 { about_middle.mTranslation.x - x * (1 - c + s) / 2,
+				   1 - y + y * (s + c - 1) / 2 - about_middle.mTranslation.y },
+				 c,
+				 s,
+				 { x, y } };
+	return move;
+}
+
+/* Moves coordinates with v from the bottom. */
+static void move_uv(float out[2], const struct uv_move *move, const struct aiVector3D *from)
+{
+	const float u = move->scale[0] * from->x, v = move->scale[1] * (1 - from->y);
+
+	out[0] = from->x;
+	out[1] = from->y;
+	if (!move->is_there)
+		return;
+	out[0] = move->offset[0] + move->cosine * u + move->sine * v;
+	out[1] = 1 - (move->offset[1] - move->sine * u + move->cosine * v);
+}
+
 static int count_mesh(struct builder *builder, uint32_t index)
 {
 	const struct aiMesh *mesh;
@@ -225,21 +267,20 @@ static void add_vertices(struct builder *builder, const struct aiMesh *from,
 			 const struct aiMatrix4x4 *place)
 {
 	struct mesh *mesh = &builder->mesh;
+	const struct aiMaterial *material = builder->scene->mMaterials[from->mMaterialIndex];
+	const struct uv_move move = uv_move_of(material);
 	bool is_linear = builder->job->format.is_linear;
 	uint8_t plain[3];
 
-	plain_colour_of(builder->scene->mMaterials[from->mMaterialIndex], builder->job->format,
-			plain);
+	plain_colour_of(material, builder->job->format, plain);
 	for (uint32_t i = 0; i < from->mNumVertices; i++) {
 		uint32_t at = mesh->vertex_count++;
 		struct aiVector3D v = from->mVertices[i];
 
 		aiTransformVecByMatrix4(&v, place);
 		memcpy(mesh->positions[at], (float[3]){ v.x, v.y, v.z }, 12);
-		if (mesh->uvs && from->mTextureCoords[0]) {
-			mesh->uvs[at][0] = from->mTextureCoords[0][i].x;
-			mesh->uvs[at][1] = from->mTextureCoords[0][i].y;
-		}
+		if (mesh->uvs && from->mTextureCoords[0])
+			move_uv(mesh->uvs[at], &move, &from->mTextureCoords[0][i]);
 		if (!mesh->colours)
 			continue;
 		memcpy(mesh->colours[at], plain, 3);

@@ -101,8 +101,9 @@ void gltf_morph_place(float position[3], const struct gltf_morph *morph, const f
 
 int gltf_morph_add(struct scenery_maker *maker, uint32_t node,
 		   const struct scenery_material *material, const struct soup *soup,
-		   float crease_rad, const struct gltf_morph *morph,
-		   const struct gltf_numbers *positions, const struct gltf_sampler *sampler)
+		   float crease_rad, const struct scenery_paint *paint,
+		   const struct gltf_morph *morph, const struct gltf_numbers *positions,
+		   const struct gltf_sampler *sampler)
 {
 	struct scenery_bend bend = { .point_count = positions->count,
 				     .shape_count = gltf_sampler_key_count(sampler) };
@@ -127,7 +128,7 @@ int gltf_morph_add(struct scenery_maker *maker, uint32_t node,
 		}
 	}
 	bend.places = (const float(*)[3])all;
-	rc = scenery_add_bent(maker, node, material, soup, crease_rad, &bend);
+	rc = scenery_add_bent(maker, node, material, soup, crease_rad, paint, &bend);
 	free(all);
 	return rc;
 }

@@ -33,8 +33,8 @@ void gltf_morph_place(float position[3], const struct gltf_morph *morph, const f
  * their vertices. Errors as scenery_add_bent; -EBADMSG also for places that are no numbers. */
 must_check int gltf_morph_add(struct scenery_maker *maker, uint32_t node,
 			      const struct scenery_material *material, const struct soup *soup,
-			      float crease_rad, const struct gltf_morph *morph,
-			      const struct gltf_numbers *positions,
+			      float crease_rad, const struct scenery_paint *paint,
+			      const struct gltf_morph *morph, const struct gltf_numbers *positions,
 			      const struct gltf_sampler *sampler);
 
 #endif

@@ -11,6 +11,7 @@
 #include "pipeline/scene/gltf_morph.h"
 #include "pipeline/scene/gltf_motions.h"
 #include "pipeline/scene/gltf_nodes.h"
+#include "pipeline/scene/gltf_paint.h"
 #include "pipeline/scene/scenery_look.h"
 #include "pipeline/scene/vrml_graph.h"
 
@@ -26,8 +27,7 @@ struct walk {
 	uint32_t root;          /* of the scenery, that stands for the file */
 	uint32_t depth;
 	bool has_other_shapes;
-	struct picture picture; /* of the texture that was used last, if it could be read */
-	const cJSON *picture_of;
+	struct gltf_pictures pictures;
 };
 
 static int fail(const struct walk *walk, int rc, const cJSON *object)
@@ -53,8 +53,7 @@ struct look {
 	struct scenery_material material;
 	bool has_mean; /* of a substance, in place of the factor */
 	uint8_t mean[3];
-	const cJSON *texture; /* NULL: none */
-	char coordinates[24]; /* "TEXCOORD_0" */
+	struct gltf_paint paint;
 };
 
 static uint8_t to_byte(float linear)
@@ -103,8 +102,6 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 	static const float white[4] = { 1, 1, 1, 1 }, black[3];
 	const cJSON *material = gltf_item(walk->gltf, GLTF_MATERIALS, primitive, "material", NULL);
 	const cJSON *pbr = cJSON_GetObjectItemCaseSensitive(material, "pbrMetallicRoughness");
-	const cJSON *picture = cJSON_GetObjectItemCaseSensitive(pbr, "baseColorTexture");
-	const cJSON *set = cJSON_GetObjectItemCaseSensitive(picture, "texCoord");
 	const char *alpha =
 		cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(material, "alphaMode"));
 	float emissive[3];
@@ -122,10 +119,7 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 	if (alpha && strcmp(alpha, "BLEND") == 0)
 		out->material.opacity = fminf(fmaxf(out->factor[3], 0), 1);
 	get_gloss(walk, out, pbr, material);
-	out->texture = gltf_item(walk->gltf, GLTF_TEXTURES, picture, "index", NULL);
-	snprintf(out->coordinates, sizeof(out->coordinates), "TEXCOORD_%d",
-		 cJSON_IsNumber(set) ? set->valueint : 0);
-	return 0;
+	return gltf_paint_get(&out->paint, walk->gltf, material, walk->warnings);
 }
 
 struct shape {
@@ -167,10 +161,11 @@ static int read_shape(struct walk *walk, struct shape *out, const cJSON *primiti
 	out->has_normals = cJSON_HasObjectItem(attributes, "NORMAL");
 	out->count = out->has_indices ? out->indices.count : out->positions.count;
 	rc = get_look(walk, &out->look, primitive);
-	out->has_uvs = rc == 0 && out->look.texture &&
-		       cJSON_HasObjectItem(attributes, out->look.coordinates);
+	out->has_uvs = rc == 0 && (out->look.paint.picture || out->look.paint.normals) &&
+		       cJSON_HasObjectItem(attributes, out->look.paint.lay.coordinates);
 	if (out->has_uvs)
-		rc = gltf_numbers_of(&out->uvs, gltf, attributes, out->look.coordinates, 2);
+		rc = gltf_numbers_of(&out->uvs, gltf, attributes, out->look.paint.lay.coordinates,
+				     2);
 	return rc;
 }
 
@@ -182,14 +177,6 @@ struct place_of {
 	const float *place; /* in that; column-major */
 	bool is_mirrored;
 };
-
-static void say_left_out(const struct walk *walk, const cJSON *primitive, const cJSON *mesh)
-{
-	diagnostics_add(walk->warnings, 0, walk->gltf->path,
-			json_text_line(&walk->gltf->json, primitive),
-			"mesh \"%.60s\" bends, so it has no picture here; that was left out",
-			gltf_name(mesh));
-}
 
 static uint32_t vertex_at(const struct shape *shape, uint32_t at)
 {
@@ -206,9 +193,11 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 	    (shape->has_colours && vertex >= shape->colours.count) ||
 	    (shape->has_uvs && vertex >= shape->uvs.count))
 		return false;
-	if (shape->has_uvs) { /* v = 0 is the top of the picture */
+	if (shape->has_uvs) {
 		out->uv[0] = gltf_number(&shape->uvs, vertex, 0);
-		out->uv[1] = 1 - gltf_number(&shape->uvs, vertex, 1);
+		out->uv[1] = gltf_number(&shape->uvs, vertex, 1);
+		gltf_paint_place(out->uv, &shape->look.paint.lay);
+		out->uv[1] = 1 - out->uv[1]; /* from the bottom */
 	}
 	for (uint32_t k = 0; k < 3; k++)
 		morphed[k] = gltf_number(&shape->positions, vertex, k);
@@ -251,18 +240,6 @@ static int add_triangles(struct soup *soup, const struct shape *shape)
 	return rc;
 }
 
-/* Reads the picture of a shape. Returns whether there is one, or -ENOMEM. */
-static int get_picture(struct walk *walk, const struct shape *shape)
-{
-	if (!shape->has_uvs)
-		return 0;
-	if (walk->picture_of == shape->look.texture)
-		return walk->picture.rgba != NULL;
-	picture_finish(&walk->picture);
-	walk->picture_of = shape->look.texture;
-	return gltf_picture(&walk->picture, walk->gltf, shape->look.texture, walk->warnings);
-}
-
 /* Reads the morph targets of a shape, and the animation of their weights. */
 static int read_morph(const struct walk *walk, struct shape *shape, const struct place_of *of,
 		      const cJSON *mesh, const cJSON *primitive)
@@ -290,8 +267,8 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 {
 	const float round = 1;
 	struct soup soup = { .texture = SOUP_NO_TEXTURE, .is_inside_out = of->is_mirrored };
+	struct scenery_paint paint = { 0 };
 	struct shape shape;
-	int has_picture;
 	int rc = read_shape(walk, &shape, primitive);
 
 	if (rc == 0)
@@ -306,23 +283,24 @@ static int add_primitive(struct walk *walk, const cJSON *primitive, const cJSON 
 	if (shape.look.material.opacity < 1.0f / 255)
 		return 0; /* it is not seen */
 	memcpy(soup.place, of->place, sizeof(soup.place));
-	has_picture = get_picture(walk, &shape);
-	rc = has_picture < 0 ? has_picture : add_triangles(&soup, &shape);
+	if (shape.has_uvs)
+		rc = gltf_pictures_get(&walk->pictures, &paint, walk->gltf, &shape.look.paint,
+				       walk->warnings);
+	if (rc == 0)
+		rc = add_triangles(&soup, &shape);
 	scenery_look_grain(&shape.look.material, &soup, &walk->maker->out.nodes[walk->root].place);
 	if (rc == 0 && shape.bender)
 		rc = gltf_morph_add(walk->maker, of->node, &shape.look.material, &soup,
-				    shape.has_normals ? round : 0, &shape.morph, &shape.positions,
-				    &shape.sampler);
+				    shape.has_normals ? round : 0, &paint, &shape.morph,
+				    &shape.positions, &shape.sampler);
 	if (rc == -EBADMSG)
 		gltf_say(walk->gltf, rc, primitive,
 			 "mesh \"%.60s\" has indices or places that are none; export it anew",
 			 gltf_name(mesh));
-	if (shape.bender && has_picture > 0)
-		say_left_out(walk, primitive, mesh);
 	if (rc == 0 && !shape.bender)
 		rc = scenery_add_surface(walk->maker, of->node, &shape.look.material,
 					 soup.triangles, soup.count, shape.has_normals ? round : 0,
-					 has_picture ? &walk->picture : NULL);
+					 &paint);
 	soup_finish(&soup);
 	return fail(walk, rc, mesh);
 }
@@ -480,7 +458,7 @@ int gltf_scenery_add(struct scenery_maker *maker, const struct gltf *gltf, uint3
 		rc = add_scene(&walk, scene, node, choice);
 	if (rc == 0)
 		warn(&walk);
-	picture_finish(&walk.picture);
+	gltf_pictures_finish(&walk.pictures);
 	free(walk.moves);
 	free(walk.was_seen);
 	free(walk.has_mesh);

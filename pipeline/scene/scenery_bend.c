@@ -1,5 +1,5 @@
 /* Computes normals of a surface in each of its shapes, and lets corners share a vertex that are one
- * point, of one colour, with one normal in all shapes. */
+ * point, of one colour and one place of the picture, with one normal in all shapes. */
 #include "pipeline/scene/scenery_bend.h"
 
 #include <errno.h>
@@ -21,7 +21,8 @@ struct bending {
 	/* owned; at rest, and then shape by shape: of each corner */
 	struct scenery_shape_vertex *all;
 	struct map vertices; /* by hash */
-	uint32_t vertex_room;
+	uint32_t vertex_room, uv_room;
+	bool has_picture;
 };
 
 /* Returns the place of a corner in a shape; the rest is shape 0, the first shape 1. */
@@ -82,15 +83,46 @@ static int take_shape(struct bending *b, uint32_t shape, float crease_rad)
 	return rc;
 }
 
+/* Sets the lattice of where pictures lie. */
+static void measure_uvs(const struct bending *b)
+{
+	float low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
+
+	for (uint32_t i = 0; i < 3 * b->soup->count; i++) {
+		float uv[2];
+
+		scenery_uv(uv, &b->soup->triangles[i / 3].corners[i % 3]);
+		for (int k = 0; k < 2; k++) {
+			low[k] = vec_least(low[k], uv[k]);
+			high[k] = vec_most(high[k], uv[k]);
+		}
+	}
+	scenery_uv_lattice(b->mesh, low, high);
+}
+
+static void uv_of(uint16_t out[2], const struct bending *b, uint32_t corner)
+{
+	float uv[2];
+
+	scenery_uv(uv, &b->soup->triangles[corner / 3].corners[corner % 3]);
+	scenery_uv_encode(out, b->mesh, uv);
+}
+
+enum { KEY_BYTES = 3 + 2 * sizeof(uint16_t) /* beside the shapes */ };
+
 /* Everything about a corner, as a hash. */
 static map_key key_of(const struct bending *b, uint32_t corner, uint8_t *scratch)
 {
 	const size_t count = 3 * (size_t)b->soup->count;
 	const uint32_t shapes = b->bend->shape_count + 1;
 	const uint8_t *rgb = b->soup->triangles[corner / 3].corners[corner % 3].rgb;
-	size_t at = 3;
+	uint16_t uv[2] = { 0 };
+	size_t at = KEY_BYTES;
 
+	if (b->has_picture)
+		uv_of(uv, b, corner);
 	memcpy(scratch, rgb, 3);
+	memcpy(scratch + 3, uv, sizeof(uv));
 	for (uint32_t s = 0; s < shapes; s++, at += sizeof(*b->all))
 		memcpy(scratch + at, &b->all[s * count + corner], sizeof(*b->all));
 	return hash_key(hash_of((struct bytes){ scratch, at }));
@@ -111,10 +143,15 @@ static int find_vertex(struct bending *b, uint32_t corner, uint32_t *firsts, uin
 	}
 	rc = ARRAY_RESERVE(mesh->vertices, b->vertex_room, (uint64_t)mesh->vertex_count + 1,
 			   SCENERY_VERTICES_MAX);
+	if (rc == 0 && b->has_picture)
+		rc = ARRAY_RESERVE(mesh->uvs, b->uv_room, (uint64_t)mesh->vertex_count + 1,
+				   SCENERY_VERTICES_MAX);
 	if (rc == 0)
 		rc = map_set(&b->vertices, key, mesh->vertex_count);
 	if (rc < 0)
 		return rc;
+	if (b->has_picture)
+		uv_of(mesh->uvs[mesh->vertex_count], b, corner);
 	*number = (uint16_t)mesh->vertex_count;
 	firsts[mesh->vertex_count] = corner;
 	vertex = &mesh->vertices[mesh->vertex_count++];
@@ -133,7 +170,7 @@ static int share_vertices(struct bending *b)
 	const uint32_t shapes = b->bend->shape_count;
 	struct scenery_mesh *mesh = b->mesh;
 	uint32_t *firsts = malloc(count * sizeof(*firsts));
-	uint8_t *scratch = malloc(3 + (shapes + 1) * sizeof(*b->all));
+	uint8_t *scratch = malloc(KEY_BYTES + (shapes + 1) * sizeof(*b->all));
 	int rc = firsts && scratch ? 0 : -ENOMEM;
 
 	mesh->triangles = malloc(b->soup->count * sizeof(*mesh->triangles));
@@ -166,9 +203,9 @@ static bool has_points(const struct bending *b)
 }
 
 int scenery_bend_mesh(struct scenery_mesh *mesh, const struct soup *soup, float crease_rad,
-		      const struct scenery_bend *bend)
+		      bool has_picture, const struct scenery_bend *bend)
 {
-	struct bending b = { .soup = soup, .bend = bend, .mesh = mesh };
+	struct bending b = { .soup = soup, .bend = bend, .mesh = mesh, .has_picture = has_picture };
 	const uint64_t corners = 3 * (uint64_t)soup->count * (bend->shape_count + 1);
 	int rc = has_points(&b) ? 0 : -EBADMSG;
 
@@ -181,6 +218,8 @@ int scenery_bend_mesh(struct scenery_mesh *mesh, const struct soup *soup, float 
 		rc = measure(&b);
 	if (rc < 0)
 		return rc;
+	if (has_picture)
+		measure_uvs(&b);
 	b.corners = calloc(soup->count, sizeof(*b.corners));
 	b.all = malloc(corners * sizeof(*b.all));
 	rc = b.corners && b.all ? 0 : -ENOMEM;
@@ -195,6 +234,8 @@ int scenery_bend_mesh(struct scenery_mesh *mesh, const struct soup *soup, float 
 		free(mesh->vertices);
 		free(mesh->triangles);
 		free(mesh->shapes);
+		free(mesh->uvs);
+		mesh->uvs = NULL;
 		mesh->vertices = NULL;
 		mesh->triangles = NULL;
 		mesh->shapes = NULL;

@@ -32,11 +32,11 @@ int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *nod
 
 static bool are_equal(const struct scenery_material *a, const struct scenery_material *b)
 {
-	return a->texture == b->texture && a->has_two_sides == b->has_two_sides &&
-	       a->by_pixel == b->by_pixel && a->opacity == b->opacity &&
-	       a->shininess == b->shininess && a->substance == b->substance &&
-	       a->relief_m == b->relief_m && a->mirror == b->mirror &&
-	       vec_dot(a->grain, b->grain) > 0.99999f &&
+	return a->texture == b->texture && a->normals == b->normals &&
+	       a->has_two_sides == b->has_two_sides && a->by_pixel == b->by_pixel &&
+	       a->opacity == b->opacity && a->shininess == b->shininess &&
+	       a->substance == b->substance && a->relief_m == b->relief_m &&
+	       a->mirror == b->mirror && vec_dot(a->grain, b->grain) > 0.99999f &&
 	       memcmp(a->emissive, b->emissive, sizeof(a->emissive)) == 0 &&
 	       memcmp(a->specular, b->specular, sizeof(a->specular)) == 0;
 }
@@ -75,7 +75,7 @@ static int find_sheet(struct scenery_maker *maker, uint32_t node, uint32_t mater
 	**found = (struct scenery_sheet){
 		.node = node,
 		.material = material,
-		.has_picture = maker->out.materials[material].texture > 0,
+		.has_picture = scenery_is_painted(&maker->out.materials[material]),
 	};
 	return 0;
 }
@@ -96,9 +96,9 @@ static bool leaves_picture(const struct soup_triangle *triangles, uint32_t count
 
 /* Finds or adds a picture; *number counts from 1. */
 static int find_texture(struct scenery_maker *maker, const struct picture *picture, bool repeats,
-			uint16_t *number)
+			bool is_map, uint16_t *number)
 {
-	const struct scenery_source source = scenery_source_of(picture, repeats);
+	const struct scenery_source source = scenery_source_of(picture, repeats, is_map);
 	struct scenery *out = &maker->out;
 	uint32_t left = SCENERY_TEXELS_MAX - scenery_texels(out), i;
 	int rc;
@@ -116,7 +116,7 @@ static int find_texture(struct scenery_maker *maker, const struct picture *pictu
 	if (rc == 0 && left < 2)
 		rc = -EFBIG;
 	if (rc == 0)
-		rc = scenery_texture_make(&out->textures[i], picture, repeats, left / 2);
+		rc = scenery_texture_make(&out->textures[i], picture, repeats, is_map, left / 2);
 	if (rc < 0)
 		return rc;
 	maker->sources[out->texture_count++] = source;
@@ -124,10 +124,26 @@ static int find_texture(struct scenery_maker *maker, const struct picture *pictu
 	return 0;
 }
 
+/* Puts pictures on a material. */
+static int add_paint(struct scenery_maker *maker, struct scenery_material *material,
+		     const struct scenery_paint *paint, const struct soup_triangle *triangles,
+		     uint32_t count)
+{
+	const bool repeats = leaves_picture(triangles, count);
+	int rc = 0;
+
+	if (paint->picture)
+		rc = find_texture(maker, paint->picture, repeats, false, &material->texture);
+	if (rc == 0 && paint->normals)
+		rc = find_texture(maker, paint->normals, repeats, true, &material->normals);
+	material->by_pixel = material->by_pixel || scenery_is_painted(material);
+	return rc;
+}
+
 int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 			const struct scenery_material *material,
 			const struct soup_triangle *triangles, uint32_t count, float crease_rad,
-			const struct picture *picture)
+			const struct scenery_paint *paint)
 {
 	struct scenery_material kept = *material;
 	struct scenery_sheet *sheet = NULL;
@@ -139,10 +155,8 @@ int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 	if (count > SCENERY_ALL_TRIANGLES_MAX - maker->triangle_count ||
 	    (material->opacity < 1 && count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
 		rc = -EFBIG;
-	if (rc == 0 && picture) {
-		rc = find_texture(maker, picture, leaves_picture(triangles, count), &kept.texture);
-		kept.by_pixel = true;
-	}
+	if (rc == 0)
+		rc = add_paint(maker, &kept, paint, triangles, count);
 	if (rc == 0)
 		rc = find_material(maker, &kept, &number);
 	if (rc == 0)
@@ -158,8 +172,10 @@ int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 
 int scenery_add_bent(struct scenery_maker *maker, uint32_t node,
 		     const struct scenery_material *material, const struct soup *soup,
-		     float crease_rad, const struct scenery_bend *bend)
+		     float crease_rad, const struct scenery_paint *paint,
+		     const struct scenery_bend *bend)
 {
+	struct scenery_material kept = *material;
 	struct scenery_mesh mesh = { .node = node };
 	struct scenery *out = &maker->out;
 	int rc = 0;
@@ -171,12 +187,14 @@ int scenery_add_bent(struct scenery_maker *maker, uint32_t node,
 	     soup->count > SCENERY_CLEAR_TRIANGLES_MAX - maker->clear_count))
 		rc = -EFBIG;
 	if (rc == 0)
-		rc = find_material(maker, material, &mesh.material);
+		rc = add_paint(maker, &kept, paint, soup->triangles, soup->count);
+	if (rc == 0)
+		rc = find_material(maker, &kept, &mesh.material);
 	if (rc == 0)
 		rc = ARRAY_RESERVE(out->meshes, maker->mesh_room, (uint64_t)out->mesh_count + 1,
 				   SCENERY_MESHES_MAX);
 	if (rc == 0)
-		rc = scenery_bend_mesh(&mesh, soup, crease_rad, bend);
+		rc = scenery_bend_mesh(&mesh, soup, crease_rad, scenery_is_painted(&kept), bend);
 	if (rc < 0)
 		return rc;
 	maker->clear_count += material->opacity < 1 ? soup->count : 0;

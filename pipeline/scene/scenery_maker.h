@@ -34,6 +34,12 @@ struct scenery_maker {
 	uint32_t look_count;
 };
 
+/* What lies on triangles by their uv; zeroed: nothing. */
+struct scenery_paint {
+	const struct picture *picture, *normals; /* borrowed; NULL: none. A normal map has x, y and
+						  * z as red, green and blue */
+};
+
 /* A dull, solid surface with one side, in the colours of its corners. */
 extern const struct scenery_material scenery_plain;
 /* A place that changes nothing. */
@@ -44,12 +50,12 @@ extern const struct scenery_place scenery_at_rest;
 must_check int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node,
 				uint32_t *number);
 /* Adds triangles in the node's metres. Equal materials are kept once. Edges where faces meet at
- * more than crease_rad stay sharp; across others light is smooth. picture: on the triangles, by
- * their uv, or NULL; equal ones are kept once, as large as the budget of pixels allows. */
+ * more than crease_rad stay sharp; across others light is smooth. Equal pictures are kept once, as
+ * large as the budget of pixels allows. */
 must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,
-				   float crease_rad, const struct picture *picture);
+				   float crease_rad, const struct scenery_paint *paint);
 /* A surface that bends: where each of the file's points is in each shape, in the node's metres. */
 struct scenery_bend {
 	const float (*places)[3]; /* borrowed; shape by shape */
@@ -60,7 +66,8 @@ struct scenery_bend {
  * metres, and the numbers of their points. Normals are computed for each shape. */
 must_check int scenery_add_bent(struct scenery_maker *maker, uint32_t node,
 				const struct scenery_material *material, const struct soup *soup,
-				float crease_rad, const struct scenery_bend *bend);
+				float crease_rad, const struct scenery_paint *paint,
+				const struct scenery_bend *bend);
 /* Tracks follow that are added after it. */
 must_check int scenery_add_motion(struct scenery_maker *maker, const struct scenery_motion *motion,
 				  uint32_t *number);

@@ -102,9 +102,6 @@ static bool has_area(const struct scenery_corner corners[3])
 	return vec_dot(normal, normal) > 0;
 }
 
-/* Where a picture lies that repeats more often than this, no number says well. */
-static const float most_uv = 10000;
-
 int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
 		      uint32_t count, float crease_rad)
 {
@@ -119,10 +116,7 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 			const struct soup_corner *from = &triangles[i].corners[k];
 
 			memcpy(to[k].position, from->position, sizeof(to[k].position));
-			for (int axis = 0; axis < 2; axis++)
-				to[k].uv[axis] =
-					fabsf(from->uv[axis]) <= most_uv ? from->uv[axis] : 0;
-			to[k].uv[1] = 1 - to[k].uv[1]; /* the format counts from the top */
+			scenery_uv(to[k].uv, from);
 			memcpy(to[k].rgb, from->rgb, sizeof(to[k].rgb));
 		}
 		sheet->count += has_area(to);
@@ -130,6 +124,37 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 	if (rc == 0 && sheet->count > before)
 		rc = scenery_smooth(&sheet->triangles[before], sheet->count - before, crease_rad);
 	return rc;
+}
+
+/* ---- where pictures lie */
+
+/* Where a picture lies that repeats more often than this, no number says well. */
+static const float most_uv = 10000;
+
+void scenery_uv(float out[2], const struct soup_corner *corner)
+{
+	for (int k = 0; k < 2; k++)
+		out[k] = fabsf(corner->uv[k]) <= most_uv ? corner->uv[k] : 0;
+	out[1] = 1 - out[1]; /* the format counts from the top */
+}
+
+void scenery_uv_lattice(struct scenery_mesh *mesh, const float low[2], const float high[2])
+{
+	for (int k = 0; k < 2; k++) {
+		mesh->uv_origin[k] = low[k];
+		mesh->uv_step[k] = (high[k] - low[k]) / SCENERY_PLACE_MAX;
+	}
+}
+
+void scenery_uv_encode(uint16_t out[2], const struct scenery_mesh *mesh, const float uv[2])
+{
+	for (int k = 0; k < 2; k++) {
+		const float step = mesh->uv_step[k];
+
+		out[k] = step > 0 ? (uint16_t)vec_least(roundf((uv[k] - mesh->uv_origin[k]) / step),
+							SCENERY_PLACE_MAX)
+				  : 0;
+	}
 }
 
 /* ---- meshes */
@@ -164,31 +189,15 @@ static void measure(struct scenery_mesh *mesh, const struct scenery_sheet *sheet
 /* The same for where the picture lies. */
 static void measure_uvs(struct scenery_mesh *mesh, const struct scenery_sheet *sheet)
 {
-	for (int k = 0; k < 2; k++) {
-		float low = INFINITY, high = -INFINITY;
+	float low[2] = { INFINITY, INFINITY }, high[2] = { -INFINITY, -INFINITY };
 
-		for (uint32_t i = 0; i < 3 * sheet->count; i++) {
-			const float at = sheet->triangles[i / 3][i % 3].uv[k];
+	for (uint32_t i = 0; i < 6 * sheet->count; i++) {
+		const float at = sheet->triangles[i / 6][i % 6 / 2].uv[i % 2];
 
-			low = vec_least(low, at);
-			high = vec_most(high, at);
-		}
-		mesh->uv_origin[k] = low;
-		mesh->uv_step[k] = (high - low) / SCENERY_PLACE_MAX;
+		low[i % 2] = vec_least(low[i % 2], at);
+		high[i % 2] = vec_most(high[i % 2], at);
 	}
-}
-
-static void uv_of(uint16_t out[2], const struct scenery_mesh *mesh,
-		  const struct scenery_corner *corner)
-{
-	for (int k = 0; k < 2; k++) {
-		const float step = mesh->uv_step[k];
-
-		out[k] = step > 0 ? (uint16_t)vec_least(
-					    roundf((corner->uv[k] - mesh->uv_origin[k]) / step),
-					    SCENERY_PLACE_MAX)
-				  : 0;
-	}
+	scenery_uv_lattice(mesh, low, high);
 }
 
 static struct scenery_vertex vertex_of(const struct scenery_mesh *mesh,
@@ -227,7 +236,7 @@ static int find_vertex(struct filling *filling, const struct scenery_corner *cor
 	int rc;
 
 	if (filling->has_picture)
-		uv_of(uv, mesh, corner);
+		scenery_uv_encode(uv, mesh, corner->uv);
 	found = map_get(&filling->vertices, key_of(&vertex, uv));
 
 	if (found != MAP_NONE) {

@@ -28,6 +28,12 @@ must_check int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_
  * -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_meshes(const struct scenery_sheet *sheet, struct scenery *out,
 				    uint32_t *mesh_room);
+/* Sets where the pictures lie at a corner: from their left and their top. */
+void scenery_uv(float out[2], const struct soup_corner *corner);
+/* Sets a mesh's lattice of such places, to hold those from low to high. */
+void scenery_uv_lattice(struct scenery_mesh *mesh, const float low[2], const float high[2]);
+/* Sets a place in that lattice. */
+void scenery_uv_encode(uint16_t out[2], const struct scenery_mesh *mesh, const float uv[2]);
 void scenery_sheet_finish(struct scenery_sheet *sheet); /* frees the triangles */
 
 #endif

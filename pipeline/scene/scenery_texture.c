@@ -7,22 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { QUALITY = 90, JPEG_BYTES_MAX = 16 << 20 };
+enum { QUALITY = 90, QUALITY_OF_MAP = 95, JPEG_BYTES_MAX = 16 << 20 };
 
-struct scenery_source scenery_source_of(const struct picture *picture, bool repeats)
+struct scenery_source scenery_source_of(const struct picture *picture, bool repeats, bool is_map)
 {
 	const size_t bytes = (size_t)picture->width * picture->height * 4;
 
 	return (struct scenery_source){ .pixels = hash_of((struct bytes){ picture->rgba, bytes }),
 					.width = picture->width,
 					.height = picture->height,
-					.repeats = repeats };
+					.repeats = repeats,
+					.is_map = is_map };
 }
 
 bool scenery_source_equals(const struct scenery_source *a, const struct scenery_source *b)
 {
 	return hash_equal(a->pixels, b->pixels) && a->width == b->width && a->height == b->height &&
-	       a->repeats == b->repeats;
+	       a->repeats == b->repeats && a->is_map == b->is_map;
 }
 
 /* The nearest power of two, by its ratio. */
@@ -86,7 +87,7 @@ static int fit(struct picture *out, const struct picture *in, bool repeats)
 }
 
 int scenery_texture_make(struct scenery_texture *out, const struct picture *picture, bool repeats,
-			 uint32_t texels_most)
+			 bool is_map, uint32_t texels_most)
 {
 	struct picture fitted = { .width = side_of(picture->width),
 				  .height = side_of(picture->height) };
@@ -101,7 +102,9 @@ int scenery_texture_make(struct scenery_texture *out, const struct picture *pict
 	}
 	buffer_init(&jpeg, JPEG_BYTES_MAX);
 	rc = fit(&fitted, picture, repeats);
-	if (rc == 0)
+	if (rc == 0 && is_map)
+		rc = picture_encode_fine_jpeg(&jpeg, &fitted, QUALITY_OF_MAP);
+	else if (rc == 0)
 		rc = picture_encode_jpeg(&jpeg, &fitted, QUALITY);
 	*out = (struct scenery_texture){ .width = (uint16_t)fitted.width,
 					 .height = (uint16_t)fitted.height,

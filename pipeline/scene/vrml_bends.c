@@ -37,8 +37,9 @@ static uint32_t point_count(const struct vrml_node *geometry)
 
 int vrml_bent_add(struct scenery_maker *maker, uint32_t node,
 		  const struct scenery_material *material, const struct soup *soup,
-		  float crease_rad, const struct vrml_node *geometry,
-		  const struct vrml_node *interpolator, struct diagnostics *diagnostics)
+		  float crease_rad, const struct scenery_paint *paint,
+		  const struct vrml_node *geometry, const struct vrml_node *interpolator,
+		  struct diagnostics *diagnostics)
 {
 	struct scenery_bend bend = { .point_count = point_count(geometry) };
 	const struct vrml_value *keys, *values;
@@ -56,7 +57,7 @@ int vrml_bent_add(struct scenery_maker *maker, uint32_t node,
 	for (size_t i = 0; i < (size_t)keys->count * bend.point_count; i++)
 		soup_place(places[i], soup, &values->floats[3 * i]);
 	bend.places = (const float(*)[3])places;
-	rc = scenery_add_bent(maker, node, material, soup, crease_rad, &bend);
+	rc = scenery_add_bent(maker, node, material, soup, crease_rad, paint, &bend);
 	free(places);
 	return rc == -EBADMSG
 		       ? diagnostics_add(diagnostics, rc, interpolator->file, interpolator->line,

@@ -16,8 +16,9 @@ const struct vrml_node *vrml_bender_of(const struct vrml *scene, const struct vr
  * scenery_add_bent. */
 must_check int vrml_bent_add(struct scenery_maker *maker, uint32_t node,
 			     const struct scenery_material *material, const struct soup *soup,
-			     float crease_rad, const struct vrml_node *geometry,
-			     const struct vrml_node *interpolator, struct diagnostics *diagnostics);
+			     float crease_rad, const struct scenery_paint *paint,
+			     const struct vrml_node *geometry, const struct vrml_node *interpolator,
+			     struct diagnostics *diagnostics);
 /* Adds the track that goes from each shape of such a surface to the next. */
 must_check int vrml_bent_track(struct scenery_maker *maker, uint32_t node,
 			       const struct vrml_node *interpolator,

@@ -328,6 +328,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	const struct vrml_node *material = vrml_node_of(look, "material", "Material");
 	const struct vrml_node *geometry = vrml_get_node(shape, "geometry"), *bender;
 	struct soup soup = { .texture = SOUP_NO_TEXTURE };
+	struct scenery_paint paint = { 0 };
 	struct scenery_material kept;
 	uint8_t rgb[3];
 	int rc, has_picture;
@@ -352,20 +353,18 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 				"%s is no geometry; it was left out", geometry->type->name);
 	if (rc > 0) {
 		scenery_look_grain(&kept, &soup, &walk->maker->out.nodes[walk->root].place);
-		if (has_picture)
+		if (has_picture) {
 			prepare(&walk->picture, &soup, look);
+			paint.picture = &walk->picture;
+		}
 		if (bender)
 			rc = vrml_bent_add(walk->maker, node, &kept, &soup, crease_of(geometry),
-					   geometry, bender, walk->diagnostics);
+					   &paint, geometry, bender, walk->diagnostics);
 		else
 			rc = scenery_add_surface(walk->maker, node, &kept, soup.triangles,
-						 soup.count, crease_of(geometry),
-						 has_picture ? &walk->picture : NULL);
+						 soup.count, crease_of(geometry), &paint);
 		if (rc == -EFBIG || rc == -ENOMEM)
 			rc = fail(walk, rc, geometry);
-		if (bender && has_picture)
-			diagnostics_add(walk->warnings, 0, geometry->file, geometry->line,
-					"what bends has no picture here; it was left out");
 	}
 	soup_finish(&soup);
 	return rc;

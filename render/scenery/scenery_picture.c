@@ -223,12 +223,12 @@ struct drawing {
 	GLuint used; /* program; 0: none yet */
 };
 
-static bool has_texture(const struct drawing *drawing, const struct scenery_material *material)
+/* Whether a picture is there: 1 + its index. */
+static bool has_texture(const struct drawing *drawing, uint16_t texture)
 {
 	const struct scenery_textures *textures = &drawing->picture->textures;
 
-	return material->texture > 0 && material->texture <= textures->count &&
-	       textures->names[material->texture - 1];
+	return texture > 0 && texture <= textures->count && textures->names[texture - 1];
 }
 
 static unsigned features_of(const struct drawing *drawing, uint32_t mesh,
@@ -244,7 +244,8 @@ static unsigned features_of(const struct drawing *drawing, uint32_t mesh,
 	       (is_glossy ? (unsigned)SCENERY_GLOSSY : 0u) |
 	       (material.relief_m > 0 ? (unsigned)SCENERY_RELIEF : 0u) |
 	       (material.mirror > 0 && drawing->picture->around ? (unsigned)SCENERY_MIRROR : 0u) |
-	       (has_texture(drawing, &material) ? (unsigned)SCENERY_TEXTURE : 0u) |
+	       (has_texture(drawing, material.texture) ? (unsigned)SCENERY_TEXTURE : 0u) |
+	       (has_texture(drawing, material.normals) ? (unsigned)SCENERY_NORMALS : 0u) |
 	       (unsigned)SCENERY_SUBSTANCE * material.substance;
 }
 

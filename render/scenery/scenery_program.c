@@ -39,6 +39,25 @@ static const char shade[] =
 	"uniform samplerCube u_around;\n"
 	"uniform float u_mirror;\n"
 	"#endif\n"
+	/* The ways of the picture's right and top are those in which its coordinates grow, by the
+	 * neighbouring pixels: exact in a flat triangle. */
+	"#ifdef NORMALS\n"
+	"uniform sampler2D u_normals;\n"
+	"vec3 mapped(vec3 n, vec3 p) {\n"
+	"	vec3 across = dFdx(p), down = dFdy(p);\n"
+	"	vec2 by_x = dFdx(v_uv), by_y = dFdy(v_uv);\n"
+	"	float area = by_x.x * by_y.y - by_y.x * by_x.y < 0.0 ? -1.0 : 1.0;\n"
+	"	vec3 right = area * (across * by_y.y - down * by_x.y);\n"
+	"	vec3 wanted = area * (across * by_y.x - down * by_x.x);\n"
+	"	right -= n * dot(right, n);\n"
+	"	right /= max(length(right), 1e-18);\n"
+	"	vec3 top = cross(n, right);\n"
+	"	vec3 map = texture2D(u_normals, v_uv).rgb * 2.0 - 1.0;\n"
+	"	map.xy *= gl_FrontFacing ? 1.0 : -1.0;\n"
+	"	map.y *= dot(top, wanted) < 0.0 ? -1.0 : 1.0;\n"
+	"	return normalize(map.x * right + map.y * top + map.z * n);\n"
+	"}\n"
+	"#endif\n"
 	"vec3 shaded(vec3 surface, vec3 n, vec3 p, vec4 sun) {\n"
 	"	vec3 to_eye = normalize(-p);\n"
 	"#if defined(SOLID) || defined(RELIEF)\n"
@@ -61,6 +80,9 @@ static const char shade[] =
 	"	surface *= u_tint * pattern;\n"
 	"#endif\n"
 	"	float before = sun.w > 0.5 ? 1.0 : light(n, 1.0, sun.xyz);\n"
+	"#ifdef NORMALS\n"
+	"	n = mapped(n, p);\n"
+	"#endif\n"
 	"#ifdef RELIEF\n"
 	"	vec3 slope = (beside - dot(pattern, vec3(0.3, 0.6, 0.1))) / step;\n"
 	"	slope = u_slope * slope;\n"
@@ -93,12 +115,12 @@ static const char vertex[] =
 	"uniform mat4 u_solid;\n"
 	"varying vec3 v_solid;\n"
 	"#endif\n"
-	"#ifdef TEXTURE\n"
+	"#ifdef PAINTED\n"
 	"uniform vec4 u_uv;\n" /* origin, step */
 	"varying vec2 v_uv;\n"
 	"#endif\n"
 	"void main() {\n"
-	"#ifdef TEXTURE\n"
+	"#ifdef PAINTED\n"
 	"	v_uv = u_uv.xy + u_uv.zw * a_base.xy;\n"
 	"#endif\n"
 	"#if defined(SOLID) || defined(RELIEF)\n"
@@ -121,6 +143,12 @@ static const char vertex[] =
 	"	gl_Position = u_clip * vec4(p, 1.0);\n"
 	"}\n";
 
+/* What `shade` needs of the fragment. */
+static const char painted[] = "#ifdef PAINTED\n"
+			      "varying vec2 v_uv;\n"
+			      "#endif\n";
+static const char derivatives[] = "#extension GL_OES_standard_derivatives : enable\n";
+
 static const char fragment[] =
 	/* u_light is u_sun */
 	"varying vec4 v_colour;\n"
@@ -131,7 +159,6 @@ static const char fragment[] =
 	"#endif\n"
 	"#ifdef TEXTURE\n"
 	"uniform sampler2D u_texture;\n"
-	"varying vec2 v_uv;\n"
 	"#endif\n"
 	"void main() {\n"
 	"	vec3 colour = v_colour.rgb;\n"
@@ -179,12 +206,14 @@ static void define(char *out, size_t bytes, unsigned features, unsigned cut)
 	if (kind > 0)
 		snprintf(solid, sizeof(solid), "#define SOLID %s_colour\n", substance_names[kind]);
 	surface_define(tools, features % SURFACE_TOOLS, cut);
-	snprintf(out, bytes, "%s%s%s%s%s%s%s", tools,
+	snprintf(out, bytes, "%s%s%s%s%s%s%s%s%s", tools,
 		 features & SCENERY_BY_PIXEL ? "#define BY_PIXEL\n" : "",
 		 features & SCENERY_GLOSSY ? "#define GLOSSY\n" : "",
 		 features & SCENERY_RELIEF ? "#define RELIEF\n" : "",
 		 features & SCENERY_MIRROR ? "#define MIRROR\n" : "",
-		 features & SCENERY_TEXTURE ? "#define TEXTURE\n" : "", solid);
+		 features & SCENERY_TEXTURE ? "#define TEXTURE\n" : "",
+		 features & SCENERY_NORMALS ? "#define NORMALS\n" : "",
+		 features & (SCENERY_TEXTURE | SCENERY_NORMALS) ? "#define PAINTED\n" : "", solid);
 }
 
 /* Returns a text if it is needed. */
@@ -200,7 +229,7 @@ static int build(struct scenery_program *p, unsigned cut)
 	const bool by_pixel = features & SCENERY_BY_PIXEL, rakes = features & SURFACE_RAKE;
 	const bool has_pattern = features & SCENERY_RELIEF || features >= SCENERY_SUBSTANCE;
 	const bool has_noise = has_pattern || solid.needs_highp;
-	char defines[SURFACE_DEFINES_BYTES + 160];
+	char defines[SURFACE_DEFINES_BYTES + 200];
 	int rc;
 
 	define(defines, sizeof(defines), features, cut);
@@ -213,6 +242,7 @@ static int build(struct scenery_program *p, unsigned cut)
 					     vertex,
 					     NULL };
 	const char *const fragment_parts[] = {
+		where(features & SCENERY_NORMALS, derivatives),
 		by_pixel || solid.needs_highp ? gl_fine_fragment : "precision mediump float;\n",
 		defines,
 		light_glsl,
@@ -224,6 +254,7 @@ static int build(struct scenery_program *p, unsigned cut)
 		where(rakes, rake_fragment_glsl),
 		surface_tools_glsl,
 		features & SCENERY_DISSOLVES ? surface_dissolve_glsl : surface_whole_glsl,
+		painted,
 		where(by_pixel, shade),
 		fragment,
 		NULL
@@ -241,6 +272,8 @@ static int build(struct scenery_program *p, unsigned cut)
 		glUniform1i(glGetUniformLocation(p->program, "u_around"), 0);
 	if (features & SCENERY_TEXTURE)
 		glUniform1i(glGetUniformLocation(p->program, "u_texture"), 1);
+	if (features & SCENERY_NORMALS)
+		glUniform1i(glGetUniformLocation(p->program, "u_normals"), 2);
 	return 0;
 }
 
@@ -273,9 +306,11 @@ static bool add(struct scenery_programs *programs, unsigned features)
 /* Leaves out what the board cannot draw. */
 static unsigned possible(unsigned features)
 {
-	if (gl_has_highp())
-		return features;
-	return features % SCENERY_SUBSTANCE & ~(unsigned)SCENERY_RELIEF;
+	if (!gl_has_highp())
+		return features % SCENERY_SUBSTANCE & ~(unsigned)(SCENERY_RELIEF | SCENERY_NORMALS);
+	if (features & SCENERY_NORMALS && !gl_has_extension("GL_OES_standard_derivatives"))
+		return features & ~(unsigned)SCENERY_NORMALS;
+	return features;
 }
 
 void scenery_programs_begin(struct scenery_programs *programs, uint8_t cut)

@@ -15,7 +15,8 @@ enum {
 	SCENERY_RELIEF = 8 * SURFACE_TOOLS,
 	SCENERY_MIRROR = 16 * SURFACE_TOOLS,
 	SCENERY_TEXTURE = 32 * SURFACE_TOOLS,
-	SCENERY_SUBSTANCE = 64 * SURFACE_TOOLS, /* times enum substance_kind */
+	SCENERY_NORMALS = 64 * SURFACE_TOOLS,    /* has a normal map */
+	SCENERY_SUBSTANCE = 128 * SURFACE_TOOLS, /* times enum substance_kind */
 	SCENERY_FEATURES = SCENERY_SUBSTANCE * SCENERY_SUBSTANCES,
 };
 
@@ -42,7 +43,8 @@ void scenery_programs_begin(struct scenery_programs *programs, uint8_t cut);
  * built unless the frame has built one. Otherwise returns what is alike: the one that dissolves as
  * well, else without the material; NULL: there is none, so the mesh is drawn later. What the driver
  * refuses is drawn without its material, then without tools. Borrowed until the next call.
- * Substances and relief need fragments with highp; without, they are left out. */
+ * Substances, relief and normal maps need fragments with highp, and normal maps derivatives
+ * (OES_standard_derivatives); without, they are left out. */
 const struct scenery_program *scenery_programs_get(struct scenery_programs *programs,
 						   unsigned features);
 /* Builds the program with those features before it is needed, whatever else the frame has built.

@@ -63,9 +63,13 @@ uint64_t scenery_textures_bytes(const struct scenery *scenery)
 void scenery_textures_bind(const struct scenery_textures *textures, const struct scenery *scenery,
 			   uint32_t mesh)
 {
-	const uint16_t texture = scenery->materials[scenery->meshes[mesh].material].texture;
+	const struct scenery_material *material =
+		&scenery->materials[scenery->meshes[mesh].material];
 
-	gl_bind_texture(1, textures->names[texture - 1]);
+	if (material->texture > 0)
+		gl_bind_texture(1, textures->names[material->texture - 1]);
+	if (material->normals > 0)
+		gl_bind_texture(2, textures->names[material->normals - 1]);
 	glBindBuffer(GL_ARRAY_BUFFER, textures->uvs);
 	glEnableVertexAttribArray(3);
 	glVertexAttribPointer(3, 2, GL_UNSIGNED_SHORT, GL_FALSE, 0, (void *)textures->offset[mesh]);

@@ -20,8 +20,8 @@ must_check int scenery_textures_load(struct scenery_textures *textures,
 bool scenery_textures_next(struct scenery_textures *textures, struct scenery *scenery);
 /* Returns the bytes that the pictures have on the GPU. */
 uint64_t scenery_textures_bytes(const struct scenery *scenery);
-/* Sets attribute 3 to where the picture lies on a mesh, and binds the picture to unit 1. The buffer
- * of attributes is another one afterwards. */
+/* Sets attribute 3 to where the pictures lie on a mesh, and binds the picture to unit 1, the normal
+ * map to unit 2. The buffer of attributes is another one afterwards. */
 void scenery_textures_bind(const struct scenery_textures *textures, const struct scenery *scenery,
 			   uint32_t mesh);
 void scenery_textures_finish(struct scenery_textures *textures); /* zeroed is fine */

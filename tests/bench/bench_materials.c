@@ -18,44 +18,40 @@ enum { WIDTH = 640, HEIGHT = 480, ROUNDS = 5, CUBE_PX = 64 };
 
 static const struct way {
 	const char *name;
-	bool is_flat, is_foggy;
+	bool is_flat, is_foggy, is_painted, is_embossed;
 	struct scenery_material material;
 } ways[] = {
-	{ "flat", true, false, { .opacity = 1 } },
-	{ "Gouraud", false, false, { .opacity = 1 } },
-	{ "Gouraud with highlight",
-	  false,
-	  false,
-	  { .opacity = 1, .specular = { 200, 200, 200 }, .shininess = 24 } },
-	{ "Phong",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .specular = { 200, 200, 200 }, .shininess = 24 } },
-	{ "two-sided", false, false, { .opacity = 1, .has_two_sides = true } },
-	{ "fog", false, true, { .opacity = 1 } },
-	{ "transparency in order", false, false, { .opacity = 0.5f } },
-	{ "marble",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_MARBLE } },
-	{ "wood", false, false, { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_WOOD } },
-	{ "sandstone",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_SANDSTONE } },
-	{ "laterite",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_LATERITE } },
-	{ "bumps of hewn stone",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .relief_m = 0.01f } },
-	{ "wood with its bumps",
-	  false,
-	  false,
-	  { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_WOOD, .relief_m = 0.002f } },
-	{ "environment", false, false, { .opacity = 1, .by_pixel = true, .mirror = 0.7f } },
+	{ "flat", true, false, .material = { .opacity = 1 } },
+	{ "Gouraud", false, false, .material = { .opacity = 1 } },
+	{ "Gouraud with highlight", false, false,
+	  .material = { .opacity = 1, .specular = { 200, 200, 200 }, .shininess = 24 } },
+	{ "Phong", false, false,
+	  .material = { .opacity = 1,
+			.by_pixel = true,
+			.specular = { 200, 200, 200 },
+			.shininess = 24 } },
+	{ "two-sided", false, false, .material = { .opacity = 1, .has_two_sides = true } },
+	{ "fog", false, true, .material = { .opacity = 1 } },
+	{ "transparency in order", false, false, .material = { .opacity = 0.5f } },
+	{ "marble", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_MARBLE } },
+	{ "wood", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_WOOD } },
+	{ "sandstone", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_SANDSTONE } },
+	{ "laterite", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .substance = SUBSTANCE_LATERITE } },
+	{ "bumps of hewn stone", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .relief_m = 0.01f } },
+	{ "wood with its bumps", false, false,
+	  .material = { .opacity = 1,
+			.by_pixel = true,
+			.substance = SUBSTANCE_WOOD,
+			.relief_m = 0.002f } },
+	{ "environment", false, false,
+	  .material = { .opacity = 1, .by_pixel = true, .mirror = 0.7f } },
+	{ "picture", .is_painted = true, .material = { .opacity = 1, .by_pixel = true } },
+	{ "normal map", .is_embossed = true, .material = { .opacity = 1, .by_pixel = true } },
 };
 
 enum { WAYS = sizeof(ways) / sizeof(*ways) };
@@ -80,6 +76,24 @@ struct measured {
 
 static struct measured measured[WAYS];
 
+/* Lays a picture of 256 x 256 pixels on the last ball: the same on all. */
+static void put_picture(struct scenery *s, bool is_map)
+{
+	struct scenery_mesh *mesh = &s->meshes[s->mesh_count - 1];
+	struct scenery_material *material = &s->materials[mesh->material];
+
+	if (s->texture_count == 0) {
+		if (is_map)
+			stage_emboss(s, mesh, 256, 1);
+		else
+			stage_paint(s, mesh, 256, 1);
+		return;
+	}
+	stage_lay(mesh, 1);
+	material->texture = !is_map;
+	material->normals = is_map;
+}
+
 static void make(struct measured *m, const struct way *way, const struct setting *setting)
 {
 	static const uint8_t ochre[3] = { 196, 140, 84 };
@@ -102,6 +116,8 @@ static void make(struct measured *m, const struct way *way, const struct setting
 
 		stage_ball(&m->scenery, &way->material, centre, 0.48f, setting->bands, 1,
 			   way->is_flat, ochre);
+		if (way->is_painted || way->is_embossed)
+			put_picture(&m->scenery, way->is_embossed);
 	}
 	m->fog = (struct surface_fog){ .share = way->is_foggy, .range_m = 9 };
 	CHECK(scenery_is_sane(&m->scenery) && pose_init(&m->pose, &m->scenery) == 0);
@@ -109,6 +125,8 @@ static void make(struct measured *m, const struct way *way, const struct setting
 	CHECK(scenery_picture_load(&m->picture, &m->scenery) == 0);
 	CHECK(scenery_cube_create(&cube, &around) == 0);
 	scenery_picture_surround(&m->picture, cube);
+	while (!scenery_textures_next(&m->picture.textures, &m->scenery))
+		continue;
 }
 
 static void finish(struct measured *m)

@@ -152,6 +152,37 @@ static void pictures_come_back_too(void **state)
 	buffer_finish(&jpeg);
 }
 
+static void normal_maps_come_back_too(void **state)
+{
+	uint16_t uvs[4][2] = { { 1, 2 }, { 3, 4 }, { 5, 6 }, { 7, 65535 } };
+	struct scenery_texture texture;
+	struct buffer object, jpeg;
+	struct little_scenery s;
+	struct scenery out;
+
+	(void)state;
+	little_scenery_init(&s);
+	add_picture(&s, &texture, uvs, &jpeg);
+	s.material.texture = 0; /* where a picture lies is known, as its normal map needs it */
+	s.material.normals = 1;
+	buffer_init(&object, 1 << 20);
+	CHECK(scenery_encode(&object, &s.scenery) == 0 && object.data[4] == 5);
+	CHECK(scenery_decode(&out, buffer_bytes(&object)) == 0);
+	CHECK(out.materials[0].texture == 0 && out.materials[0].normals == 1);
+	CHECK(memcmp(out.meshes[1].uvs, uvs, sizeof(uvs)) == 0);
+	scenery_finish(&out);
+	for (size_t n = 0; n < object.size; n++)
+		CHECK(scenery_decode(&out, (struct bytes){ object.data, n }) == -EBADMSG);
+	buffer_clear(&object);
+	s.material.normals = 2;
+	CHECK(scenery_encode(&object, &s.scenery) == -EINVAL);
+	s.material.normals = 1;
+	s.material.by_pixel = false;
+	CHECK(scenery_encode(&object, &s.scenery) == -EINVAL);
+	buffer_finish(&object);
+	buffer_finish(&jpeg);
+}
+
 static void pictures_that_break_a_rule_are_not_written(void **state)
 {
 	uint16_t uvs[4][2] = { { 0 } };
@@ -359,6 +390,7 @@ int main(void)
 		cmocka_unit_test(reads_what_was_published_before_there_were_materials),
 		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
 		cmocka_unit_test(pictures_come_back_too),
+		cmocka_unit_test(normal_maps_come_back_too),
 		cmocka_unit_test(pictures_that_break_a_rule_are_not_written),
 		cmocka_unit_test(what_breaks_a_rule_is_not_written),
 	};

@@ -366,15 +366,16 @@ static void ply_pictures_are_upright_by_vertex_and_by_corner(void **state)
 	}
 }
 
-/* glTF counts v from the top: 0.1 there is 0.9 here. */
-static void gltf_pictures_are_upright(void **state)
+/* glTF counts v from the top: 0.1 there is 0.9 here. A KHR_texture_transform that turns, halves
+ * and moves lays other numbers at the same places. */
+static void gltf_pictures_lie_where_the_file_has_them(void **state)
 {
-	static const char gltf[] =
-		"{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+	static const char format[] =
+		"{\"extensionsUsed\":[\"KHR_texture_transform\"],\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
 		"\"nodes\":[{\"mesh\":0,\"translation\":[-2,0,0]}],"
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},"
 		"\"indices\":2,\"material\":0}]}],"
-		"\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+		"\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0%s}}}],"
 		"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"skin.png\"}],"
 		"\"buffers\":[{\"uri\":\"square.bin\",\"byteLength\":92}],"
 		"\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
@@ -387,24 +388,35 @@ static void gltf_pictures_are_upright(void **state)
 	const struct {
 		float positions[4][3], uvs[4][2];
 		uint16_t indices[6];
-	} data = { { { 2, 0, 0 }, { 3, 0, 0 }, { 3, 1, 0 }, { 2, 1, 0 } },
-		   { { .1f, .9f }, { .9f, .9f }, { .9f, .1f }, { .1f, .1f } },
-		   { 0, 1, 2, 0, 2, 3 } };
-	const struct import_options options = { 0 };
-	struct import_report report;
-	struct diagnostics diagnostics = { 0 };
-	struct mesh mesh;
-	char path[256];
+	} data[2] = { { { { 2, 0, 0 }, { 3, 0, 0 }, { 3, 1, 0 }, { 2, 1, 0 } },
+			{ { .1f, .9f }, { .9f, .9f }, { .9f, .1f }, { .1f, .1f } },
+			{ 0, 1, 2, 0, 2, 3 } },
+		      { { { 2, 0, 0 }, { 3, 0, 0 }, { 3, 1, 0 }, { 2, 1, 0 } },
+			{ { .1f, .1f }, { .1f, 1.7f }, { 1.7f, 1.7f }, { 1.7f, .1f } },
+			{ 0, 1, 2, 0, 2, 3 } } };
+	static const char *const moved[2] = {
+		"", ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.05,0.95],"
+		    "\"rotation\":1.57079632679,\"scale\":[0.5,0.5]}}"
+	};
 	(void)state;
 
-	scan_write(path, "square.gltf", gltf, strlen(gltf));
-	scan_write_beside(path, "square.bin", &data, 92);
-	write_picture(path, "skin.png");
-	if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0)
-		fail_msg("%s", diagnostics.first.text);
-	check_square(&mesh, &report);
-	mesh_finish(&mesh);
-	scan_remove(path);
+	for (int i = 0; i < 2; i++) {
+		const struct import_options options = { 0 };
+		struct import_report report;
+		struct diagnostics diagnostics = { 0 };
+		struct mesh mesh;
+		char path[256], gltf[2048];
+
+		CHECK(snprintf(gltf, sizeof(gltf), format, moved[i]) < (int)sizeof(gltf));
+		scan_write(path, "square.gltf", gltf, strlen(gltf));
+		scan_write_beside(path, "square.bin", &data[i], 92);
+		write_picture(path, "skin.png");
+		if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0)
+			fail_msg("%s", diagnostics.first.text);
+		check_square(&mesh, &report);
+		mesh_finish(&mesh);
+		scan_remove(path);
+	}
 }
 
 static void a_missing_or_damaged_picture_is_a_warning(void **state)
@@ -661,7 +673,7 @@ int main(void)
 		cmocka_unit_test(a_ply_of_doubles_is_placed_with_all_its_digits),
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
 		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
-		cmocka_unit_test(gltf_pictures_are_upright),
+		cmocka_unit_test(gltf_pictures_lie_where_the_file_has_them),
 		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),

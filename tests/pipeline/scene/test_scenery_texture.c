@@ -143,6 +143,7 @@ static bool shows_the_picture(struct scenery *s)
 static void a_picture_is_kept_once_with_sides_that_are_powers_of_two(void **state)
 {
 	struct picture picture = { 48, 150, calloc(48 * 150, 4) };
+	const struct scenery_paint paint = { .picture = &picture };
 	struct scenery_material glass = scenery_plain;
 	struct scenery_maker maker = { 0 };
 	struct soup_triangle square[2];
@@ -155,12 +156,12 @@ static void a_picture_is_kept_once_with_sides_that_are_powers_of_two(void **stat
 	CHECK(scenery_add_node(&maker, &root, &node) == 0);
 	for (int i = 0; i < 3; i++)
 		CHECK(scenery_add_surface(&maker, node, i == 2 ? &glass : &scenery_plain, square, 2,
-					  0, &picture) == 0);
+					  0, &paint) == 0);
 	/* where it repeats it is another one, and so are other pixels */
 	square[0].corners[1].uv[0] = 2.5f;
-	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
+	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &paint) == 0);
 	picture.rgba[0] = 9;
-	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture) == 0);
+	CHECK(scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &paint) == 0);
 	CHECK(scenery_maker_end(&maker, &s) == 0 && scenery_is_sane(&s));
 	CHECK(s.texture_count == 3 && s.material_count == 4 && scenery_triangles(&s) == 10);
 	for (uint32_t i = 0; i < 3; i++)
@@ -173,6 +174,7 @@ static void a_picture_is_kept_once_with_sides_that_are_powers_of_two(void **stat
 static void all_pictures_stay_within_their_budget(void **state)
 {
 	struct picture picture = { 4096, 4096, calloc(4096 * 4096, 4) };
+	const struct scenery_paint paint = { .picture = &picture };
 	struct scenery_maker maker = { 0 };
 	struct soup_triangle square[2];
 	uint32_t node;
@@ -185,7 +187,7 @@ static void all_pictures_stay_within_their_budget(void **state)
 	CHECK(scenery_add_node(&maker, &root, &node) == 0);
 	for (uint32_t i = 0; i < 6; i++) {
 		picture.rgba[0] = (uint8_t)i;
-		rc = scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &picture);
+		rc = scenery_add_surface(&maker, node, &scenery_plain, square, 2, 0, &paint);
 		CHECK(rc == 0);
 		CHECK(maker.out.textures[i].width <= SCENERY_TEXTURE_PX_MAX);
 		CHECK(scenery_texels(&maker.out) <= SCENERY_TEXELS_MAX);
@@ -211,7 +213,7 @@ static void a_resized_picture_keeps_its_places(void **state)
 		for (uint32_t i = 0; i < 2 * width; i++)
 			if (i % width >= width / 2 - 20 && i % width < width / 2)
 				memset(&in.rgba[4 * i], 255, 4);
-		CHECK(scenery_texture_make(&out, &in, false, 1 << 20) == 0);
+		CHECK(scenery_texture_make(&out, &in, false, false, 1 << 20) == 0);
 		CHECK(out.width == (c == 3 ? 256 : c == 2 ? 64 : 128) && out.height == 2);
 		CHECK(picture_decode(&back, (struct bytes){ out.jpeg, out.jpeg_bytes }) == 0);
 		for (uint32_t i = 0; i < back.width; i++) {
@@ -260,11 +262,11 @@ static void make_vrml(struct scenery *out, const char *text, struct diagnostics 
 	buffer_finish(&png);
 }
 
-#define SQUARE(texture)                                                                            \
-	"#VRML V2.0 utf8\nShape { appearance Appearance { material Material {\n"                   \
-	"  diffuseColor 0.2 0.2 0.2 }\n  texture " texture " }\n"                                  \
-	"  geometry IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n"  \
-	"    coordIndex [ 0 1 2 3 ]\n"                                                             \
+#define SQUARE(texture)                                                                                 \
+	"#VRML V2.0 utf8\nShape { appearance Appearance { material Material {\n"                        \
+	"  diffuseColor 0.2 0.2 0.2 }\n  texture " texture " }\n"                                       \
+	"  geometry IndexedFaceSet { coord DEF C Coordinate { point [ 0 0 0, 1 0 0, 1 1 0, 0 1 0 ] }\n" \
+	"    coordIndex [ 0 1 2 3 ]\n"                                                                  \
 	"    texCoord TextureCoordinate { point [ 0 0, 1 0, 1 1, 0 1 ] } } }"
 
 static void an_image_texture_takes_the_place_of_the_colour(void **state)
@@ -301,56 +303,102 @@ static void a_picture_that_cannot_be_read_is_a_warning(void **state)
 	}
 }
 
-/* The same square in glTF, whose v counts from the top. */
-static void a_base_colour_texture_is_shown(void **state)
+/* By the formula of VRML97, 6.49: with a quarter turn about its middle the picture is seen turned
+ * clockwise; half a scale shows its lower left quarter. */
+static void a_texture_transform_of_vrml_moves_the_picture_too(void **state)
 {
-	static const float numbers[] = {
-		0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 1, 0, 0, 1, 0
-	};
-	static const char rest[] =
-		"\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 80}],\n"
-		"\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, "
-		"\"type\": \"VEC3\"}, {\"bufferView\": 0, \"byteOffset\": 48, \"componentType\": "
-		"5126, \"count\": 4, \"type\": \"VEC2\"}],\n"
-		"\"meshes\": [{\"primitives\": [{\"mode\": 5, \"material\": 0, \"attributes\": "
-		"{\"POSITION\": 0, \"TEXCOORD_1\": 1}}]}], \"nodes\": [{\"mesh\": 0}],\n"
-		"\"textures\": [{\"source\": 0}], \"scenes\": [{\"nodes\": [0]}],\n"
-		"\"materials\": [{\"pbrMetallicRoughness\": {\"baseColorTexture\": "
-		"{\"index\": 0, \"texCoord\": 1}}}]}";
-	static const char *const images[] = { "{\"uri\": \"a%20b.png\"}",
-					      "{\"uri\": \"data:image/png;base64,%s\"}",
-					      "{\"uri\": \"none.png\"}", "{\"bufferView\": 0}" };
-	struct buffer png = make_png();
-	const struct gltf_options options = { .open_file = open_picture, .data = &png };
-	char *base64 = malloc(2 * png.size + 8), places[200];
+	struct diagnostics warnings = { 0 };
+	struct scenery s;
 
 	(void)state;
+	make_vrml(&s,
+		  SQUARE("ImageTexture { url \"a b.png\" } textureTransform TextureTransform { "
+			 "center 0.5 0.5 rotation 1.5707963 }"),
+		  &warnings);
+	CHECK(scenery_decode_textures(&s) == 0 && warnings.count == 0 && s.textures[0].repeats);
+	CHECK(is_colour(&s, 0.2f, 0.8f, 1) && is_colour(&s, 0.2f, 0.2f, 2));
+	CHECK(is_colour(&s, 0.8f, 0.8f, 0) && is_colour(&s, 0.8f, 0.2f, 0));
+	scenery_finish(&s);
+	make_vrml(&s,
+		  SQUARE("ImageTexture { url \"a b.png\" } textureTransform TextureTransform { "
+			 "scale 0.5 0.5 }"),
+		  &warnings);
+	CHECK(scenery_decode_textures(&s) == 0 && warnings.count == 0 && !s.textures[0].repeats);
+	for (int i = 0; i < 4; i++)
+		CHECK(is_colour(&s, i % 2 ? 0.1f : 0.9f, i / 2 ? 0.1f : 0.9f, 1));
+	scenery_finish(&s);
+}
+
+/* Numbers of glTF: the same square as a strip, whose v counts from the top; a lift of its upper
+ * side; times, and a weight at each. */
+static const float numbers[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 1, 0,
+				 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1 };
+
+#define LAYING  "\"baseColorTexture\": {\"index\": 0, \"texCoord\": 1"
+#define PAINTED "\"pbrMetallicRoughness\": {" LAYING "}}"
+
+/* Reads the square with a picture and a material; more: what follows the lists. */
+static void make_gltf(struct scenery *out, const char *image, const char *material,
+		      const char *more, struct diagnostics *warnings)
+{
+	static const char rest[] =
+		"\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 136}],\n"
+		"\"accessors\": [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 4, "
+		"\"type\": \"VEC3\"}, {\"bufferView\": 0, \"byteOffset\": 48, \"componentType\": "
+		"5126, \"count\": 4, \"type\": \"VEC2\"}, {\"bufferView\": 0, \"byteOffset\": 80, "
+		"\"componentType\": 5126, \"count\": 4, \"type\": \"VEC3\"}, {\"bufferView\": 0, "
+		"\"byteOffset\": 128, \"componentType\": 5126, \"count\": 2, \"type\": "
+		"\"SCALAR\"}],\n"
+		"\"meshes\": [{\"primitives\": [{\"mode\": 5, \"material\": 0, \"attributes\": "
+		"{\"POSITION\": 0, \"TEXCOORD_1\": 1}, \"targets\": [{\"POSITION\": 2}]}]}],\n"
+		"\"nodes\": [{\"mesh\": 0}],\n"
+		"\"textures\": [{\"source\": 0}], \"scenes\": [{\"nodes\": [0]}],\n";
+	struct buffer png = make_png();
+	const struct gltf_options options = { .open_file = open_picture, .data = &png };
+	const char *cut = strstr(image, "%s");
+	const int before = (int)(cut ? cut - image : (long)strlen(image));
+	char *base64 = malloc(2 * png.size + 8), places[200];
+	const struct gltf_choice choice = { 0 };
+	struct diagnostics diagnostics = { 0 };
+	struct scenery_maker maker = { 0 };
+	static char text[1 << 16];
+	struct gltf gltf;
+	uint32_t node;
+
+	CHECK(sizeof(numbers) == 136);
 	sodium_bin2base64(base64, 2 * png.size + 8, png.data, png.size,
 			  sodium_base64_VARIANT_ORIGINAL);
 	sodium_bin2base64(places, sizeof(places), (const uint8_t *)numbers, sizeof(numbers),
 			  sodium_base64_VARIANT_ORIGINAL);
-	for (size_t i = 0; i < 4; i++) {
-		const char *cut = strstr(images[i], "%s");
-		const int before = (int)(cut ? cut - images[i] : (long)strlen(images[i]));
-		struct diagnostics diagnostics = { 0 }, warnings = { 0 };
-		const struct gltf_choice choice = { 0 };
-		struct scenery_maker maker = { 0 };
-		static char text[1 << 16];
-		struct scenery s;
-		struct gltf gltf;
-		uint32_t node;
+	CHECK(snprintf(
+		      text, sizeof(text),
+		      "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": "
+		      "\"data:;base64,%s\"}],\n\"images\": [%.*s%s%s],\n%s%s\"materials\": [{%s}]}",
+		      places, before, image, cut ? base64 : "", cut ? cut + 2 : "", rest, more,
+		      material) < (int)sizeof(text));
+	CHECK(scenery_add_node(&maker, &root, &node) == 0);
+	if (gltf_read(&gltf, (struct bytes){ (const uint8_t *)text, strlen(text) }, "a.gltf",
+		      &options, &diagnostics) != 0 ||
+	    gltf_scenery_add(&maker, &gltf, node, &choice, warnings) != 0)
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
+	gltf_finish(&gltf);
+	free(base64);
+	buffer_finish(&png);
+}
 
-		CHECK(snprintf(text, sizeof(text),
-			       "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": "
-			       "\"data:;base64,%s\"}],\n\"images\": [%.*s%s%s],\n%s",
-			       places, before, images[i], cut ? base64 : "", cut ? cut + 2 : "",
-			       rest) < (int)sizeof(text));
-		CHECK(scenery_add_node(&maker, &root, &node) == 0);
-		if (gltf_read(&gltf, (struct bytes){ (const uint8_t *)text, strlen(text) },
-			      "a.gltf", &options, &diagnostics) != 0)
-			fail_msg("%s", diagnostics.first.text);
-		CHECK(gltf_scenery_add(&maker, &gltf, node, &choice, &warnings) == 0);
-		CHECK(scenery_maker_end(&maker, &s) == 0 && scenery_is_sane(&s));
+static void a_base_colour_texture_is_shown(void **state)
+{
+	static const char *const images[] = { "{\"uri\": \"a%20b.png\"}",
+					      "{\"uri\": \"data:image/png;base64,%s\"}",
+					      "{\"uri\": \"none.png\"}", "{\"bufferView\": 0}" };
+
+	(void)state;
+	for (size_t i = 0; i < 4; i++) {
+		struct diagnostics warnings = { 0 };
+		struct scenery s;
+
+		make_gltf(&s, images[i], PAINTED, "", &warnings);
 		CHECK(shows_the_picture(&s) == (i < 2) && (warnings.count == 0) == (i < 2));
 		if (i == 2)
 			CHECK(strstr(warnings.first.text,
@@ -358,10 +406,94 @@ static void a_base_colour_texture_is_shown(void **state)
 		if (i == 3)
 			CHECK(strstr(warnings.first.text, "it is neither JPEG nor PNG"));
 		scenery_finish(&s);
-		gltf_finish(&gltf);
 	}
-	free(base64);
-	buffer_finish(&png);
+}
+
+static const char there[] = "{\"uri\": \"a%20b.png\"}";
+
+/* KHR_texture_transform's own example shows the lower left quarter of a picture, which is green
+ * here; with the whole picture its turn is clockwise. */
+static void a_texture_transform_moves_the_picture(void **state)
+{
+	struct diagnostics warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	make_gltf(&s, there,
+		  "\"pbrMetallicRoughness\": {" LAYING
+		  ", \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0, 1], "
+		  "\"rotation\": 1.57079632679, \"scale\": [0.5, 0.5]}}}}",
+		  "", &warnings);
+	CHECK(scenery_decode_textures(&s) == 0);
+	for (int i = 0; i < 4; i++)
+		CHECK(is_colour(&s, i % 2 ? 0.1f : 0.9f, i / 2 ? 0.1f : 0.9f, 1));
+	scenery_finish(&s);
+	make_gltf(&s, there,
+		  "\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": 0, "
+		  "\"texCoord\": 7, \"extensions\": {\"KHR_texture_transform\": {\"texCoord\": 1, "
+		  "\"offset\": [0, 1], \"rotation\": 1.57079632679}}}}",
+		  "", &warnings);
+	CHECK(scenery_decode_textures(&s) == 0 && warnings.count == 0);
+	CHECK(is_colour(&s, 0.2f, 0.8f, 1) && is_colour(&s, 0.2f, 0.2f, 2));
+	CHECK(is_colour(&s, 0.8f, 0.8f, 0) && is_colour(&s, 0.8f, 0.2f, 0));
+	scenery_finish(&s);
+}
+
+static void a_normal_map_lies_where_the_picture_does(void **state)
+{
+	static const char map[] = "\"normalTexture\": {\"index\": 0, \"texCoord\": 1, "
+				  "\"scale\": 0.5}, ";
+	struct diagnostics warnings = { 0 };
+	const uint8_t *red;
+	char both[512];
+	struct scenery s;
+
+	(void)state;
+	snprintf(both, sizeof(both), "%s%s", map, PAINTED);
+	make_gltf(&s, there, both, "", &warnings);
+	CHECK(warnings.count == 0 && s.texture_count == 2 && shows_the_picture(&s));
+	CHECK(s.materials[0].by_pixel && s.materials[0].normals == 2);
+	/* Red is 1 to the right and -1 down and inwards; half as deep, 1/2, -1/2 and -1. */
+	red = &s.textures[1].rgba[4 * (10 * SIDE + 10)];
+	CHECK(abs(red[0] - 180) < 4 && abs(red[1] - 75) < 4 && abs(red[2] - 23) < 4);
+	scenery_finish(&s);
+	/* without a picture it has its own place */
+	snprintf(both, sizeof(both), "%s\"name\": \"plaster\"", map);
+	make_gltf(&s, there, both, "", &warnings);
+	CHECK(warnings.count == 0 && s.texture_count == 1 && s.materials[0].normals == 1 &&
+	      s.materials[0].texture == 0 && s.meshes[0].uvs);
+	scenery_finish(&s);
+	snprintf(both, sizeof(both), "\"name\": \"plaster\", \"normalTexture\": {\"index\": 0}, %s",
+		 PAINTED);
+	make_gltf(&s, there, both, "", &warnings);
+	CHECK(strstr(warnings.first.text, "the normal map of material \"plaster\" lies otherwise"));
+	CHECK(s.materials[0].normals == 0 && shows_the_picture(&s));
+	scenery_finish(&s);
+}
+
+/* What bends has its picture in every shape: a morph target here, an interpolator there. */
+static void what_bends_keeps_its_picture(void **state)
+{
+	static const char lifting[] =
+		"\"animations\": [{\"channels\": [{\"sampler\": 0, \"target\": {\"node\": 0, "
+		"\"path\": \"weights\"}}], \"samplers\": [{\"input\": 3, \"output\": 3}]}],\n";
+	struct diagnostics warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	make_gltf(&s, there, PAINTED, lifting, &warnings);
+	CHECK(warnings.count == 0 && s.meshes[0].shape_count == 2 && shows_the_picture(&s));
+	scenery_finish(&s);
+	make_vrml(
+		&s,
+		SQUARE("ImageTexture { url \"a b.png\" }") "DEF T TimeSensor { loop TRUE cycleInterval 2 }\n"
+							   "DEF I CoordinateInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 1 0 0, 1 1 0, "
+							   "0 1 0, 0 0 0, 1 0 0, 1 1 1, 0 1 1 ] }\n"
+							   "ROUTE T.fraction_changed TO I.set_fraction\n"
+							   "ROUTE I.value_changed TO C.point",
+		&warnings);
+	CHECK(warnings.count == 0 && s.meshes[0].shape_count == 2 && shows_the_picture(&s));
+	scenery_finish(&s);
 }
 
 int main(void)
@@ -372,7 +504,11 @@ int main(void)
 		cmocka_unit_test(a_resized_picture_keeps_its_places),
 		cmocka_unit_test(an_image_texture_takes_the_place_of_the_colour),
 		cmocka_unit_test(a_picture_that_cannot_be_read_is_a_warning),
+		cmocka_unit_test(a_texture_transform_of_vrml_moves_the_picture_too),
 		cmocka_unit_test(a_base_colour_texture_is_shown),
+		cmocka_unit_test(a_texture_transform_moves_the_picture),
+		cmocka_unit_test(a_normal_map_lies_where_the_picture_does),
+		cmocka_unit_test(what_bends_keeps_its_picture),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -167,24 +167,50 @@ static inline struct scenery_mesh *stage_pane(struct scenery *s,
 	return mesh;
 }
 
-/* Puts a picture of a side of 2^n pixels on a pane: stripes and discs in three colours, seen
- * `times` over. */
-static inline void stage_paint(struct scenery *s, struct scenery_mesh *mesh, int side, float times)
+/* Lays pictures on a mesh, straight from the front, seen `times` over. */
+static inline void stage_lay(struct scenery_mesh *mesh, float times)
+{
+	if (!mesh->uvs)
+		mesh->uvs = calloc(mesh->vertex_count, sizeof(*mesh->uvs));
+	CHECK(mesh->uvs);
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		const uint16_t *place = mesh->vertices[v].place;
+
+		mesh->uvs[v][0] = place[0];
+		mesh->uvs[v][1] = (uint16_t)(STAGE_LATTICE - place[2]);
+	}
+	for (int k = 0; k < 2; k++) {
+		mesh->uv_step[k] = times / STAGE_LATTICE;
+		mesh->uv_origin[k] = 0.05f;
+	}
+}
+
+/* Adds a picture of a side of 2^n pixels, whose pixels are undefined; *number counts from 1. */
+static inline struct scenery_texture *stage_texture(struct scenery *s, int side, float times,
+						    uint16_t *number)
 {
 	struct scenery_texture *texture;
 
-	s->textures = calloc(1, sizeof(*s->textures));
-	mesh->uvs = calloc(mesh->vertex_count, sizeof(*mesh->uvs));
-	CHECK(s->textures && mesh->uvs);
-	texture = s->textures;
+	s->textures = realloc(s->textures, (s->texture_count + 1) * sizeof(*s->textures));
+	CHECK(s->textures);
+	texture = &s->textures[s->texture_count++];
+	*number = (uint16_t)s->texture_count;
 	*texture = (struct scenery_texture){ .width = (uint16_t)side,
 					     .height = (uint16_t)side,
 					     .repeats = times > 1,
 					     .jpeg_bytes = 1,
 					     .rgba = malloc((size_t)(4 * side * side)) };
 	CHECK(texture->rgba);
-	s->texture_count = 1;
-	s->materials[mesh->material].texture = 1;
+	return texture;
+}
+
+/* Puts a picture on a mesh: stripes and discs in three colours. */
+static inline void stage_paint(struct scenery *s, struct scenery_mesh *mesh, int side, float times)
+{
+	struct scenery_texture *texture =
+		stage_texture(s, side, times, &s->materials[mesh->material].texture);
+
+	stage_lay(mesh, times);
 	for (int i = 0; i < side * side; i++) {
 		const float x = (float)(i % side) / (float)side,
 			    y = (float)(i / side) / (float)side;
@@ -195,15 +221,31 @@ static inline void stage_paint(struct scenery *s, struct scenery_mesh *mesh, int
 		texture->rgba[4 * i + 2] = (uint8_t)(255 * y);
 		texture->rgba[4 * i + 3] = 255;
 	}
-	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-		const uint16_t *place = mesh->vertices[v].place;
+}
 
-		mesh->uvs[v][0] = place[0];
-		mesh->uvs[v][1] = (uint16_t)(STAGE_LATTICE - place[2]);
-	}
-	for (int k = 0; k < 2; k++) {
-		mesh->uv_step[k] = times / STAGE_LATTICE;
-		mesh->uv_origin[k] = 0.05f;
+/* Puts a normal map on a mesh: four domes, and a groove below them. */
+static inline void stage_emboss(struct scenery *s, struct scenery_mesh *mesh, int side, float times)
+{
+	struct scenery_texture *texture =
+		stage_texture(s, side, times, &s->materials[mesh->material].normals);
+
+	stage_lay(mesh, times);
+	for (int i = 0; i < side * side; i++) {
+		const float x = ((float)(i % side) + 0.5f) / (float)side,
+			    y = ((float)(i / side) + 0.5f) / (float)side; /* from the top */
+		const float right = fmodf(x, 0.5f) - 0.25f, up = 0.2f - fmodf(y, 0.4f);
+		float normal[3] = { 0, 0, 1 };
+
+		if (y < 0.8f && hypotf(right, up) < 0.17f) {
+			normal[0] = right / 0.2f;
+			normal[1] = up / 0.2f;
+		} else if (y > 0.85f && y < 0.95f) {
+			normal[1] = y < 0.9f ? -0.7f : 0.7f;
+		}
+		vec_normalise(normal);
+		for (int k = 0; k < 3; k++)
+			texture->rgba[4 * i + k] = (uint8_t)lrintf((normal[k] + 1) / 2 * 255);
+		texture->rgba[4 * i + 3] = 255;
 	}
 }
 

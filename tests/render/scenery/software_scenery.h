@@ -20,8 +20,8 @@ enum { SOFTWARE_HITS_MAX = 64 };
 /* A triangle in metres from the eye. */
 struct software_triangle {
 	const struct scenery_material *material;
-	const struct scenery_texture *texture; /* NULL: none */
-	float uvs[3][3];                       /* two each */
+	const struct scenery_texture *texture, *map; /* NULL: none */
+	float uvs[3][3];                             /* two each */
 	struct appearance_solid solid;
 	float corners[3][3], normals[3][3], colours[3][3], places[3][3]; /* places: in the node */
 };
@@ -69,13 +69,15 @@ static inline void software_add(struct software_picture *p, const struct pose *p
 	out->material = &p->scenery->materials[mesh->material];
 	if (out->material->texture)
 		out->texture = &p->scenery->textures[out->material->texture - 1];
+	if (out->material->normals)
+		out->map = &p->scenery->textures[out->material->normals - 1];
 	appearance_solid_init(&out->solid, out->material, m);
 	for (int k = 0; k < 3; k++) {
 		const struct scenery_vertex *v = &mesh->vertices[mesh->triangles[triangle][k]];
 		struct appearance_place place = { .footprint_m = 0 };
 		float normal[3], *at = out->places[k], *n = place.normal, *surface = place.surface;
 
-		for (int i = 0; i < 2 && out->texture; i++)
+		for (int i = 0; i < 2 && mesh->uvs; i++)
 			out->uvs[k][i] =
 				mesh->uv_origin[i] +
 				mesh->uv_step[i] * mesh->uvs[mesh->triangles[triangle][k]][i];
@@ -190,12 +192,12 @@ static inline void software_bilinear(float rgb[3], const struct scenery_texture 
 	}
 }
 
-/* The picture where a ray meets a triangle: trilinear, by how far the places of the next pixels are
+/* A picture where a ray meets a triangle: trilinear, by how far the places of the next pixels are
  * (OpenGL ES 2.0, 3.7.7). */
-static inline void software_paint(float surface[3], const struct software_picture *p,
-				  const struct software_hit *hit, const float direction[3])
+static inline void software_look_up(float rgb[3], const struct software_picture *p,
+				    const struct scenery_texture *t, const struct software_hit *hit,
+				    const float direction[3])
 {
-	const struct scenery_texture *t = hit->of->texture;
 	const float forward = vec_dot(direction, p->view->forward);
 	const int levels = (int)log2f((float)(t->width > t->height ? t->width : t->height));
 	float uv[3], most = 0, lod, coarse[3], fine[3];
@@ -218,9 +220,23 @@ static inline void software_paint(float surface[3], const struct software_pictur
 	lod = vec_least(vec_most(log2f(most), 0), (float)levels);
 	software_bilinear(fine, t, (int)lod, uv);
 	software_bilinear(coarse, t, (int)lod < levels ? (int)lod + 1 : levels, uv);
-	vec_mix(fine, fine, coarse, lod - floorf(lod));
-	for (int k = 0; k < 3; k++)
-		surface[k] *= fine[k];
+	vec_mix(rgb, fine, coarse, lod - floorf(lod));
+}
+
+/* How the place goes where the picture goes right and up, all over a triangle. */
+static inline void software_ways(float right[3], float top[3], const struct software_triangle *t)
+{
+	const float u1 = t->uvs[1][0] - t->uvs[0][0], v1 = t->uvs[1][1] - t->uvs[0][1];
+	const float u2 = t->uvs[2][0] - t->uvs[0][0], v2 = t->uvs[2][1] - t->uvs[0][1];
+	const float area = u1 * v2 - u2 * v1;
+	float ab[3], ac[3];
+
+	vec_sub(ab, t->corners[1], t->corners[0]);
+	vec_sub(ac, t->corners[2], t->corners[0]);
+	for (int k = 0; k < 3; k++) {
+		right[k] = (ab[k] * v2 - ac[k] * v1) / area;
+		top[k] = (ab[k] * u2 - ac[k] * u1) / area; /* v grows downwards */
+	}
 }
 
 static inline void software_shade(float rgb[3], const struct software_picture *p,
@@ -232,8 +248,16 @@ static inline void software_shade(float rgb[3], const struct software_picture *p
 	float colour[3];
 
 	software_mix(place.surface, t->colours, hit->share);
-	if (t->texture)
-		software_paint(place.surface, p, hit, direction);
+	if (t->texture) {
+		software_look_up(colour, p, t->texture, hit, direction);
+		for (int k = 0; k < 3; k++)
+			place.surface[k] *= colour[k];
+	}
+	if (t->map) {
+		software_look_up(place.map, p, t->map, hit, direction);
+		software_ways(place.right, place.top, t);
+		place.is_back = hit->is_back;
+	}
 	vec_copy(rgb, place.surface);
 	if (t->material->by_pixel) {
 		software_mix(place.normal, t->normals, hit->share);

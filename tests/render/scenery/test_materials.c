@@ -206,6 +206,32 @@ static void make_tiled(struct scenery *s)
 	stage_paint(s, mesh, 128, 7);
 }
 
+static void make_embossed(struct scenery *s)
+{
+	const struct scenery_material plaster = {
+		.opacity = 1, .by_pixel = true, .specular = { 60, 60, 60 }, .shininess = 20
+	};
+	struct scenery_mesh *mesh =
+		stage_pane(s, &plaster, (float[3]){ 0, 0.6f, 0.1f }, (float[3]){ 2.2f, -1, 0 },
+			   (float[3]){ 0, 0, 1.8f }, 4, ochre);
+
+	stage_emboss(s, mesh, 64, 3);
+}
+
+/* Round, with a picture too, and seen from both sides: a dome outside is a dent inside. */
+static void make_embossed_bowl(struct scenery *s)
+{
+	const struct scenery_material clay = { .opacity = 1,
+					       .by_pixel = true,
+					       .has_two_sides = true };
+	const uint32_t before = s->mesh_count;
+
+	stage_ball(s, &clay, middle, 1, 14, 0.6f, false, white);
+	CHECK(s->mesh_count == before + 1);
+	stage_paint(s, &s->meshes[before], 64, 1);
+	stage_emboss(s, &s->meshes[before], 64, 1);
+}
+
 static const struct material_case {
 	const char *name;
 	void (*make)(struct scenery *s);
@@ -228,6 +254,8 @@ static const struct material_case {
 	{ "environment, relief, highlight", make_rough_gold, 1 },
 	{ "picture", make_painted, 1 },
 	{ "picture that repeats", make_tiled, 1 },
+	{ "normal map", make_embossed, 1 },
+	{ "normal map, picture, two sides", make_embossed_bowl, 1 },
 };
 
 enum { CASES = sizeof(cases) / sizeof(*cases), ROWS = (CASES + ACROSS - 1) / ACROSS };
@@ -385,6 +413,7 @@ static void every_material_is_what_software_makes_of_it(void **state)
 		worse += db < least_db;
 	}
 	write_sheet();
+	CHECK(gl_has_extension("GL_OES_standard_derivatives")); /* else there was no normal map */
 	gl_target_destroy(&target);
 	CHECK(gl_check("the test") == 0);
 	headless_destroy(headless);
