@@ -282,6 +282,10 @@ static int read_order(const struct plan_reader *r, const cJSON *json,
 		if (out->count[k] < out->order[k])
 			return refuse(r, step->line, "points",
 				      "must be at least as many along each axis as the order");
+		if (out->order[k] == 2 && out->count[k] > 2)
+			return refuse(r, step->line, "order",
+				      "must be 3 or more where an axis has over two points: "
+				      "straight pieces meet in creases");
 		out->knots[k] = malloc((out->count[k] + out->order[k]) * sizeof(*out->knots[k]));
 		if (!out->knots[k])
 			return -ENOMEM;

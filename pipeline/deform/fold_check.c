@@ -1,4 +1,5 @@
-/* Judges triangles by the derivatives in their middle and a bound of how much these change. */
+/* Judges triangles by what is known for sure, or by the derivatives in their middle and a bound of
+ * how much these change. */
 #include "pipeline/deform/fold_check.h"
 
 #include <errno.h>
@@ -100,9 +101,10 @@ static bool part_folds(const struct warp *warp, const double c[3][3], int depth,
 
 static bool folds(const struct warp *warp, const double corners[3][3], int depth, double place[3])
 {
-	const double bound = bound_of(warp, corners);
 	double middle[3], radius = 0, margin;
 
+	if (warp->is_safe && warp->is_safe(warp->data, corners))
+		return false;
 	for (int k = 0; k < 3; k++)
 		middle[k] = (corners[0][k] + corners[1][k] + corners[2][k]) / 3;
 	for (int v = 0; v < 3; v++)
@@ -111,15 +113,9 @@ static bool folds(const struct warp *warp, const double corners[3][3], int depth
 	memcpy(place, middle, sizeof(middle));
 	if (!(margin > 0))
 		return true;
-	if (!isfinite(bound)) {
-		for (int k = 0; k < 3; k++) {
-			middle_of(place, corners[k], corners[(k + 1) % 3]);
-			if (!(margin_at(warp, place) > 0))
-				return true;
-		}
+	if (!warp->is_safe && margin > bound_of(warp, corners) * radius)
 		return false;
-	}
-	return margin <= bound * radius && depth > 0 && part_folds(warp, corners, depth - 1, place);
+	return depth > 0 && part_folds(warp, corners, depth - 1, place);
 }
 
 static int check_range(void *user, uint32_t first, uint32_t after, uint32_t worker)

@@ -16,9 +16,9 @@ double fold_growth(const struct warp *warp, const double from[3], double to[3]);
  * derivatives differ from those in the middle of a triangle by no more than the bound of the second
  * derivative times the distance, so where their least singular value in the middle is above that,
  * nothing folds in it. Else the triangle is divided, and its parts are judged, down to 1/64 of its
- * edges. Where there is no bound, its middle and the middles of its edges alone are. The place that
- * is found is in the first triangle that has one, whatever the number of jobs. Returns 1 with a
- * place; 0: none; -ENOMEM. */
+ * edges. A warp that knows what is safe is asked instead of its bound. The place that is found is
+ * in the first triangle that has one, whatever the number of jobs. Returns 1 with a place; 0: none;
+ * -ENOMEM. */
 must_check int fold_find(double place[3], const struct mesh *mesh, const struct warp *warp,
 			 uint32_t jobs);
 

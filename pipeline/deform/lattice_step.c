@@ -132,5 +132,5 @@ static double warp_bound(const void *data, const double low[3], const double hig
 
 struct warp lattice_warp(const struct control_lattice *lattice)
 {
-	return (struct warp){ warp_place, warp_bound, lattice };
+	return (struct warp){ .place = warp_place, .bound = warp_bound, .data = lattice };
 }

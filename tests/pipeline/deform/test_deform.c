@@ -261,7 +261,7 @@ static double no_bound(const void *data, const double low[3], const double high[
 /* At a million, floats are 1/16 apart. */
 static void refuses_to_divide_what_floats_cannot(void **state)
 {
-	const struct warp warp = { wave, no_bound, NULL };
+	const struct warp warp = { .place = wave, .bound = no_bound };
 	struct mesh mesh;
 	(void)state;
 
@@ -509,6 +509,52 @@ static void refuses_a_fold_between_vertices(void **state)
 	}
 }
 
+/* A square over a plane goes over a surface with a valley, between all of its corners, middles and
+ * the middles of its edges. Up to a metre over the valley there is room for it, higher it folds. */
+static void refuses_a_fold_over_a_valley_between_vertices(void **state)
+{
+	enum { POINTS = 109 };
+	static const float heights[] = { 0.5f, 0.9f, 1.1f, 2 };
+	char message[DIAGNOSTIC_BYTES], json[8192];
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(heights); i++) {
+		size_t used = (size_t)snprintf(json, sizeof(json),
+					       "{\"tolerance\": 1000, \"steps\": [\n{\"surface\": "
+					       "{\"way\": \"onto\", \"order\": [3, 2], "
+					       "\"points\": [");
+		struct deform_report report;
+		struct mesh mesh;
+		int rc;
+
+		for (int n = 0; n < 2 * POINTS; n++)
+			used += (size_t)snprintf(json + used, sizeof(json) - used,
+						 "%s[%g, %d, %g]%s", n % POINTS ? "" : "[",
+						 n % POINTS * 0.3 - 16.265, n < POINTS ? -6 : 6,
+						 n % POINTS == 37 ? -0.045 : 0,
+						 n % POINTS < POINTS - 1 ? ", "
+						 : n < POINTS            ? "], "
+									 : "]");
+		snprintf(json + used, sizeof(json) - used, "]}}]}");
+		shape_room(&mesh, 4, 2);
+		for (int corner = 0; corner < 4; corner++)
+			shape_vertex(&mesh, corner % 2 ? 8 : -8, corner / 2 ? 4 : -4, heights[i]);
+		shape_triangle(&mesh, 0, 1, 3);
+		shape_triangle(&mesh, 0, 3, 2);
+		rc = run(&mesh, json, &report, message);
+		if (rc != (heights[i] > 1 ? -EDOM : 0))
+			fail_msg("at %.1f: %d, %s", (double)heights[i], rc, message);
+		if (rc != 0) {
+			const char *at = strstr(message, "fold over at ");
+			float x;
+
+			CHECK(strstr(message, "bend.json:2:") && at);
+			CHECK(sscanf(at, "fold over at %f", &x) == 1 && fabsf(x + 5.165f) < 0.16f);
+		}
+		mesh_finish(&mesh);
+	}
+}
+
 /* A textured square with a plain one beside it comes back from its files as it was bent. */
 static void textures_go_along(void **state)
 {
@@ -596,6 +642,9 @@ static void refuses_what_makes_no_sense(void **state)
 		{ STEP("\"surface\": {\"way\": \"flat\", \"order\": [2, 1], \"points\": "
 		       "[[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]}"),
 		  "\"order\" must be" },
+		{ STEP("\"surface\": {\"way\": \"flat\", \"order\": [2, 2], \"points\": "
+		       "[[[0, 0, 0], [1, 0, 1], [2, 0, 0]], [[0, 1, 0], [1, 1, 1], [2, 1, 0]]]}"),
+		  "straight pieces meet in creases" },
 		{ STEP("\"surface\": {\"way\": \"flat\", \"weights\": [[1, 1], [1, 0]], "
 		       "\"points\": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]}"),
 		  "\"weights\" must be" },
@@ -645,6 +694,7 @@ int main(void)
 		cmocka_unit_test(stretches_a_dome_as_little_as_it_can),
 		cmocka_unit_test(refuses_to_fold_over_and_names_the_point),
 		cmocka_unit_test(refuses_a_fold_between_vertices),
+		cmocka_unit_test(refuses_a_fold_over_a_valley_between_vertices),
 		cmocka_unit_test(textures_go_along),
 		cmocka_unit_test(refuses_what_makes_no_sense),
 	};
