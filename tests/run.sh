@@ -6,6 +6,7 @@
 #   tests/run.sh only NAME...   only tests whose path contains one of the names: test_cut, e2e/kiosk, net/
 #
 # A test passes with exit status 0. With 77 it is skipped, and its last line says why. Any other status is a failure.
+# The end names the ten tests that took most processor time.
 # Unit tests, end-to-end tests and virtual machines run at the same time; each uses its own port and its own folder.
 set -u
 cd "$(dirname "$0")/.."
@@ -36,6 +37,7 @@ run_one() {
 	fi
 	times >"$log.times"
 	cpu=$(($(children_s "$log.times") - cpu))
+	echo "$cpu $name" >"$log.cpu"
 	case $status in
 	0) echo passed >"$log.verdict"; printf '  pass  %-44s %3d s, %d of processor\n' "$name" $((SECONDS - start)) "$cpu" ;;
 	77) echo skipped >"$log.verdict"; printf '  skip  %-44s %s\n' "$name" "$(tail -n 1 "$log")" ;;
@@ -78,7 +80,8 @@ if [ "${1:-}" = lane ]; then
 		release-*)
 			run_one "$name" 2400 env -u RELEASES_MADE nice -n 5 bash -c ". tests/e2e/lib.sh; ${name#release-}_release"
 			;;
-		qemu/arm64 | e2e/*)
+		qemu/arm64) run_one "$name.sh" 2400 nice -n 5 bash "tests/$name.sh" ;;
+		e2e/*)
 			case $name in e2e/weak | e2e/pictures) release=demo ;; *) release=small ;; esac
 			until [ -z "${RELEASES_MADE:-}" ] || [ -e "$logs/release-$release.log.verdict" ]; do sleep 1; done
 			run_one "$name.sh" 2400 nice -n 5 bash "tests/$name.sh"
@@ -97,7 +100,9 @@ rm -rf "$logs"
 mkdir -p "$logs"
 count() { cat "$logs"/*.verdict | grep -c "$1"; }
 summary() {
-	printf '\n%d minutes %d seconds\n' $(((SECONDS - began) / 60)) $(((SECONDS - began) % 60))
+	printf '\n%d minutes %d seconds, %d s of processor; the dearest:\n' $(((SECONDS - began) / 60)) \
+		$(((SECONDS - began) % 60)) "$(cat "$logs"/*.cpu | awk '{ sum += $1 } END { print sum }')"
+	cat "$logs"/*.cpu | sort -rn | head -n 10 | awk '{ printf "  %4d s  %s\n", $1, $2 }'
 	echo "$(count passed) passed, $(count failed) failed, $(count skipped) skipped"
 	[ "$(count failed)" -eq 0 ]
 }
