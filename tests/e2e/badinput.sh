@@ -1,7 +1,7 @@
 #!/bin/bash
 # Passes malformed and unusual files to every reader that could meet them, readers of scans under sanitizers: each run
 # ends within ten seconds without a crash, and a refusal names the file and the reason. Pictures are also tested as the
-# texture of a scan.
+# texture of a scan. Every fifth file; "all" (make badinput) takes each.
 set -u
 cd "$(dirname "$0")/../.."
 scans=../shared/scans/badinput
@@ -75,10 +75,12 @@ meet() {
 }
 export -f meet judge
 
-find "$scans" -type f ! -name 'SOURCE*' -print0 | sort -z |
-	xargs -0 -P 2 -n 8 bash -c 'for file; do meet "$file"; done' meet >"$folder/results"
+every=5
+[ "${1:-}" != all ] || every=1
+find "$scans" -type f ! -name 'SOURCE*' | sort | awk -v every="$every" 'NR % every == 0' >"$folder/files"
+xargs -d '\n' -P 2 -n 8 bash -c 'for file; do meet "$file"; done' meet <"$folder/files" >"$folder/results"
 grep -v '^met ' "$folder/results"
 met=$(grep -c '^met ' "$folder/results")
-expected=$(find "$scans" -type f ! -name 'SOURCE*' | wc -l)
+expected=$(wc -l <"$folder/files")
 echo "$met of $expected files met"
-! grep -q '^FAIL' "$folder/results" && [ "$met" = "$expected" ] && [ "$met" -gt 400 ]
+! grep -q '^FAIL' "$folder/results" && [ "$met" = "$expected" ] && [ "$met" -gt $((400 / every)) ]

@@ -1,5 +1,6 @@
 """appliance.py IMAGE WORK [STICKS]: boots the appliance's image, waits for the temple, taps it, expects a card, and checks the journal.
-STICKS is a folder of update bundles by name (docs/image.md); each is plugged in as a stick. With ARCH=arm64 in the environment the image is of
+STICKS is a folder of update bundles by name (docs/image.md); each is plugged in as a stick. Without it, what was written to the disk is noted in
+WORK/writes, a session for powercut.py. With ARCH=arm64 in the environment the image is of
 that architecture."""
 import json
 import os
@@ -252,11 +253,17 @@ def main():
     disk = os.path.join(work, "disk.img")
     subprocess.run(["cp", "--sparse=always", image, disk], check=True)
     os.truncate(disk, DISK_BYTES)
-    machine = Appliance(disk, work, "appliance")
+    sticks = sys.argv[3] if len(sys.argv) > 3 else None
+    writes = os.path.join(work, "writes")
+    shutil.rmtree(writes, ignore_errors=True)
+    if not sticks:
+        os.makedirs(writes)
+        subprocess.run(["cp", "--sparse=always", disk, os.path.join(writes, "base.img")], check=True)
+    machine = Appliance(disk, work, "appliance", None if sticks else os.path.join(writes, "writes.log"))
     try:
         visit(machine, began)
-        if len(sys.argv) > 3:
-            updates(machine, sys.argv[3])
+        if sticks:
+            updates(machine, sticks)
             changed(machine)
     finally:
         machine.stop()

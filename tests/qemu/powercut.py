@@ -1,4 +1,5 @@
 """powercut.py IMAGE STICKS WORK: cuts the power while the appliance runs (docs/powercut.md).
+powercut.py FOLDER: only looks at GLANCES disks of a session that appliance.py recorded there.
 
 A session runs once, with a log of all writes of its disk: first start on a larger card, provisioning, a release from a stick, a tap, a
 newer release, marking the slot as good; if STICKS has an update of the system, that too. Then, for each cut, a disk is made as it may
@@ -125,8 +126,9 @@ class Session:
         print(f"session of {time.monotonic() - began:.0f} s")
 
     def load(self):
-        self.events, self.sequences = json.load(open(self.path("events.json")))
-        self.writes = writelog.read(self.path("writes.log"), self.events["end"])
+        if os.path.exists(self.path("events.json")):
+            self.events, self.sequences = json.load(open(self.path("events.json")))
+        self.writes = writelog.read(self.path("writes.log"), self.events.get("end"))
         self.places = partitions(self.path("base.img"))
         self.kinds = {}
         for i, write in enumerate(self.writes):
@@ -260,24 +262,35 @@ def look(cut, work, sticks):
     return None, seen
 
 
+def look_at_disks(session, seed, count, lies, disk):
+    """Of so many disks; returns how many are ill."""
+    failed = 0
+    for number in range(count):
+        cut = Cut(session, seed, f"glance-{number}", lies)
+        wrong = glance(cut, disk)
+        if wrong:
+            failed += 1
+            print(f"disk {cut.name}, cut {cut.cut} at {cut.kind}: FAILED, {wrong}", flush=True)
+    print(f"{count} disks looked at without starting them")
+    return failed
+
+
 def main():
-    image, sticks, work = sys.argv[1:4]
     cuts, seed, only = int(os.environ.get("CUTS") or 100), os.environ.get("SEED") or "1", os.environ.get("CUT")
     lies, glances = bool(os.environ.get("LIES")), int(os.environ.get("GLANCES") or 3 * cuts)
     writelog.self_test()
+    if len(sys.argv) == 2:
+        session = Session(sys.argv[1])
+        session.load()
+        session.figures()
+        sys.exit(1 if look_at_disks(session, seed, glances, lies, session.path("disk.img")) else 0)
+    image, sticks, work = sys.argv[1:4]
     session = Session(os.path.join(work, "session"))
     if not (only or os.environ.get("AGAIN")) or not os.path.exists(session.path("events.json")):
         session.record(image, sticks)
     session.load()
     session.figures()
-    failed = 0
-    for number in range(0 if only else glances):
-        cut, disk = Cut(session, seed, f"glance-{number}", lies), os.path.join(work, "disk.img")
-        wrong = glance(cut, disk)
-        if wrong:
-            failed += 1
-            print(f"disk {cut.name}, cut {cut.cut} at {cut.kind}: FAILED, {wrong}", flush=True)
-    print(f"{glances} disks looked at without starting them")
+    failed = look_at_disks(session, seed, 0 if only else glances, lies, os.path.join(work, "disk.img"))
     numbers = [int(only)] if only else range(cuts)
     with open(os.path.join(work, "cuts.jsonl"), "a") as results:
         for number in numbers:
