@@ -74,7 +74,7 @@ BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo curator test check soak soak-year torture badinput golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo curator test check soak soak-year torture badinput pictures golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -117,6 +117,9 @@ torture: all $(BUILD)/.test-deps ## every allocation and every call on a file fa
 
 badinput: all $(BUILD)/.test-deps ## each of the 469 malformed and unusual files to every reader that could meet it
 	@bash tests/e2e/badinput.sh all
+
+pictures: all $(BUILD)/.test-deps ## 16 views of the half-size demo temple against the reference (minutes)
+	@bash tests/e2e/pictures.sh all
 
 golden: all $(BUILD)/.test-deps ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
 	@LANGUAGES="$(or $(LANGUAGES),en km ja ar)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh

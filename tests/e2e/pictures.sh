@@ -1,15 +1,24 @@
 #!/bin/bash
-# Compares the kiosk's settled pictures of the demo temple with the reference, through nginx, fetcher and cache: 16 of
-# the first 40 views of the bench's path (VIEWS=N: N of them, spread over it; DEMO=build/demo SIZE=1280x720: the temple
-# of make demo itself).
+# Compares the kiosk's settled pictures with the reference, through nginx, fetcher and cache: 8 of the first 40 views of the
+# bench's path around the small temple. "all" (make pictures): 16 views of the half-size demo temple, with as many images
+# as a museum has (DEMO=build/demo SIZE=1280x720: the temple of make demo itself). VIEWS=N: N views, spread over the 40.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 work=build/e2e/pictures size=${SIZE:-640x360}
-rm -rf "$work/state" "$work/lumigraph" "$work/polygons"
+rm -rf "$work"
 mkdir -p "$work"
-if [ -n "${DEMO:-}" ]; then demo=$DEMO; else demo_release; fi
-grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-16}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
+# 1.3 dB below what was measured; of what images add, 0.9 (0.7 for the small temple).
+views=16 least=(28.2 25.6 6)
+if [ -n "${DEMO:-}" ]; then
+	demo=$DEMO
+elif [ "${1:-}" = all ]; then
+	demo_release
+else
+	demo=$small views=8 least=(26.9 25.6 3.2)
+	small_release
+fi
+grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-$views}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
 build/gopura-content render "$demo/content" --views "$work/views.txt" --size "$size" \
 	--supersample 4 --out "$work/truth"
 serve "$demo/release" "$work/server"
@@ -23,13 +32,14 @@ for mode in lumigraph polygons; do
 	echo "$mode: $(tail -n 1 "$work/$mode.jsonl")"
 	! grep -q '"settled": false' "$work/$mode/views.jsonl" || fail "a view did not settle"
 done
-python3 - "$work" <<'P'
+python3 - "$work" "${least[@]}" <<'P'
 import json
 import sys
 
 last = lambda mode: json.loads(open(f"{sys.argv[1]}/{mode}.jsonl").readlines()[-1])
 images, polygons = last("lumigraph"), last("polygons")
-assert images["psnr_db"] >= 28.2, f"mean {images['psnr_db']} dB"
-assert images["psnr_worst5_db"] >= 25.6, f"worst {images['psnr_worst5_db']} dB"
-assert images["psnr_db"] >= polygons["psnr_db"] + 6, "images are hardly better than polygons"
+mean, worst, gain = map(float, sys.argv[2:])
+assert images["psnr_db"] >= mean, f"mean {images['psnr_db']} dB"
+assert images["psnr_worst5_db"] >= worst, f"worst {images['psnr_worst5_db']} dB"
+assert images["psnr_db"] >= polygons["psnr_db"] + gain, "images are hardly better than polygons"
 P

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Weak boards: the kiosk's settled pictures of the demo temple with 32 MiB of textures, on a driver that lacks what weak
+# Weak boards: the kiosk's settled pictures of the small temple with 32 MiB of textures, on a driver that lacks what weak
 # boards lack (tests/tools/weak_gl.c), all of it together. No call is rejected, every view settles, and the pictures stay
 # above a minimum quality.
 #
@@ -33,17 +33,17 @@ build/tests/tools/weak_probe >"$work/probe"
 grep '^more than' "$work/probe-mediump"
 
 # ---- the pictures
-demo_release
+small_release
 grep -v '^#' tests/bench/views.txt | head -40 | awk -v n="${VIEWS:-2}" 'int(NR * n / 40) > int((NR - 1) * n / 40)' >"$work/views.txt"
-build/gopura-content render "$demo/content" --views "$work/views.txt" --size "$size" \
+build/gopura-content render "$small/content" --views "$work/views.txt" --size "$size" \
 	--supersample 4 --out "$work/truth"
 printf '[render]\ntexture_mib = 32\n' >"$work/board.ini"
 # draws NAME LIMITS
 draws() {
 	local name=$1 run=$work/$1
 	WEAK_GL=$2 WEAK_GL_REPORT=$run.json LD_PRELOAD=$shim build/gopura-kiosk --display headless \
-		--size "$size" --board "$work/board.ini" --release "$demo/release" \
-		--trust "$demo/release/root/1.json" --state "$work/state" \
+		--size "$size" --board "$work/board.ini" --release "$small/release" \
+		--trust "$small/release/root/1.json" --state "$work/state" \
 		--views "$work/views.txt" --capture "$run" 2>"$run.log" ||
 		{ tail -20 "$run.log"; fail "$name: the kiosk ended with an error"; }
 	! grep -E 'GL says|kiosk bug|board bug|weak_gl: refused' "$run.log" || fail "$name: GL was asked for too much"
@@ -71,8 +71,8 @@ for name in sys.argv[2:]:
 P
 
 # ---- a little scene, with room for all its faces: what a limit itself costs, and that all that the scene's test claims
-# holds with it. Which samples arrive first moves one run by 0.6 dB, so the best of three runs counts; a limit gets no more
-# of them than it takes, and those after the first draw the lumigraph alone.
+# holds with it. Which samples arrive first moves one run by 0.6 dB, so a limit gets up to three runs; those after the first draw
+# the lumigraph alone.
 # little LIMITS [TEST]: the dB of a run
 little() {
 	WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/scene/test_scene "${@:2}" \
@@ -81,11 +81,7 @@ little() {
 	sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"
 }
 lumigraph=images_show_what_vertices_cannot
-strong=0
-for _ in 1 2 3; do
-	one=$(little '' "$lumigraph") # the rest is a unit test
-	strong=$(printf '%s\n' "$strong" "$one" | sort -n | tail -n 1)
-done
+strong=$(little '' "$lumigraph") # the rest is a unit test
 for limit in ${LIMITS:+size mediump} all; do
 	held=$(little "$limit")
 	for _ in 2 3; do

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Cuts the power while the appliance runs in QEMU, at points of the log of its disk's writes (powercut.py,
-# docs/powercut.md). CUTS=N cuts (100), SEED=N others; "system": the session contains an update of the system. Failed cuts
+# docs/powercut.md). CUTS=N cuts (1, with a look at 6 more disks), SEED=N others; "system": the session contains an update of the system. Failed cuts
 # are kept in build/qemu-image/powercut, and CUT=N with its SEED makes the same disk again while the same session
 # exists.
 set -eu
@@ -51,4 +51,5 @@ if [ "${1:-}" = system ] && [ ! -f "$sticks/system.img" ]; then
 	VERSION=$(of_image VERSION)-next SEQUENCE=$(($(of_image SEQUENCE) + 1)) image/bundle.sh "$work/system"
 	stick system "$(($(stat -c %s "$work/system/gopura.raucb") / 1048576 + 40))" "$work/system/gopura.raucb"
 fi
+[ -n "${CUTS:-}" ] || export CUTS=1 GLANCES=6
 exec python3 tests/qemu/powercut.py "$image/gopura.img" "$sticks" "$work"
