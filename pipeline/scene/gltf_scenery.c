@@ -123,7 +123,7 @@ static int get_look(struct walk *walk, struct look *out, const cJSON *primitive)
 }
 
 struct shape {
-	struct gltf_numbers positions, colours, indices, uvs;
+	struct gltf_numbers positions, colours, indices, uvs, normals;
 	bool has_uvs, has_colours, has_indices, has_normals;
 	struct look look;
 	struct gltf_morph morph;
@@ -159,6 +159,10 @@ static int read_shape(struct walk *walk, struct shape *out, const cJSON *primiti
 	if (rc < 0)
 		return rc;
 	out->has_normals = cJSON_HasObjectItem(attributes, "NORMAL");
+	if (out->has_normals)
+		rc = gltf_numbers_of(&out->normals, gltf, attributes, "NORMAL", 3);
+	if (rc < 0)
+		return rc;
 	out->count = out->has_indices ? out->indices.count : out->positions.count;
 	rc = get_look(walk, &out->look, primitive);
 	out->has_uvs = rc == 0 && (out->look.paint.picture || out->look.paint.normals) &&
@@ -193,6 +197,11 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 	    (shape->has_colours && vertex >= shape->colours.count) ||
 	    (shape->has_uvs && vertex >= shape->uvs.count))
 		return false;
+	/* Morph targets turn them. */
+	for (uint32_t k = 0; k < 3 && shape->has_normals && shape->morph.count == 0 &&
+			     vertex < shape->normals.count;
+	     k++)
+		out->normal[k] = gltf_number(&shape->normals, vertex, k);
 	if (shape->has_uvs) {
 		out->uv[0] = gltf_number(&shape->uvs, vertex, 0);
 		out->uv[1] = gltf_number(&shape->uvs, vertex, 1);

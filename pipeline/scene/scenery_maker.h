@@ -49,9 +49,9 @@ extern const struct scenery_place scenery_at_rest;
 
 must_check int scenery_add_node(struct scenery_maker *maker, const struct scenery_node *node,
 				uint32_t *number);
-/* Adds triangles in the node's metres. Equal materials are kept once. Edges where faces meet at
- * more than crease_rad stay sharp; across others light is smooth. Equal pictures are kept once, as
- * large as the budget of pixels allows. */
+/* Adds triangles in the node's metres. Equal materials are kept once. Corners keep the normals of
+ * the file; of others, edges where faces meet at more than crease_rad stay sharp; across others
+ * light is smooth. Equal pictures are kept once, as large as the budget of pixels allows. */
 must_check int scenery_add_surface(struct scenery_maker *maker, uint32_t node,
 				   const struct scenery_material *material,
 				   const struct soup_triangle *triangles, uint32_t count,

@@ -50,6 +50,8 @@ static void smooth_run(struct scenery_corner (*triangles)[3], const float (*face
 		float *normal = triangles[run[i].triangle][run[i].corner].normal;
 		float unit[3] = { own[0], own[1], own[2] };
 
+		if (triangles[run[i].triangle][run[i].corner].has_normal)
+			continue;
 		vec_normalise(unit);
 		vec_copy(normal, own);
 		for (uint32_t k = 0; k < count; k++) {
@@ -117,6 +119,8 @@ int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *t
 
 			memcpy(to[k].position, from->position, sizeof(to[k].position));
 			scenery_uv(to[k].uv, from);
+			vec_copy(to[k].normal, from->normal);
+			to[k].has_normal = vec_dot(from->normal, from->normal) > 0.5f;
 			memcpy(to[k].rgb, from->rgb, sizeof(to[k].rgb));
 		}
 		sheet->count += has_area(to);

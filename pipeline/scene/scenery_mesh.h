@@ -8,6 +8,7 @@
 struct scenery_corner {
 	float position[3], normal[3], uv[2];
 	uint8_t rgb[3];
+	bool has_normal; /* of the file, which stays */
 };
 
 struct scenery_sheet {
@@ -17,11 +18,12 @@ struct scenery_sheet {
 	uint32_t count, room;
 };
 
-/* Sets the normals of corners: smooth where faces meet at no more than crease_rad. -ENOMEM. */
+/* Sets the normals of corners that have none: smooth where faces meet at no more than crease_rad.
+ * -ENOMEM. */
 must_check int scenery_smooth(struct scenery_corner (*triangles)[3], uint32_t count,
 			      float crease_rad);
-/* Adds triangles, with normals that are smooth where faces meet at no more than crease_rad.
- * Triangles without an area are left out. -EFBIG, -ENOMEM. */
+/* Adds triangles, with the normals of the file, or normals that are smooth where faces meet at no
+ * more than crease_rad. Triangles without an area are left out. -EFBIG, -ENOMEM. */
 must_check int scenery_sheet_add(struct scenery_sheet *sheet, const struct soup_triangle *triangles,
 				 uint32_t count, float crease_rad);
 /* Appends the sheet's meshes to out->meshes, as many as its vertices need; all have one lattice.

@@ -13,7 +13,8 @@ enum { SOUP_TRIANGLES_MAX = 1 << 24 };
 
 struct soup_corner {
 	float position[3];
-	float uv[2]; /* v = 0 at the bottom of the picture */
+	float normal[3]; /* that the file gives; 0 0 0: none */
+	float uv[2];     /* v = 0 at the bottom of the picture */
 	uint8_t rgb[3];
 };
 

@@ -196,7 +196,7 @@ static int add_sides(const struct extrusion *e)
 
 	for (uint32_t i = 0; i + 1 < e->spine.count && rc == 0; i++)
 		for (uint32_t j = 0; j + 1 < e->section.count && rc == 0; j++) {
-			struct soup_corner corners[4];
+			struct soup_corner corners[4] = { 0 };
 
 			set_corner(e, i, j, &corners[0]);
 			set_corner(e, i, j + 1, &corners[1]);

@@ -13,7 +13,8 @@ struct faces {
 	const struct vrml_node *node;
 	const struct vrml_value *points, *indices;                            /* not NULL */
 	const struct vrml_value *colours, *colour_indices, *uvs, *uv_indices; /* or NULL */
-	bool colour_per_vertex;
+	const struct vrml_value *normals, *normal_indices;                    /* likewise */
+	bool colour_per_vertex, normal_per_vertex;
 	const uint8_t *rgb;
 	float low[3], high[3]; /* for texture coordinates where none are given */
 	int axes[2];
@@ -88,6 +89,22 @@ static int64_t own_index(const struct vrml_value *indices, int64_t at, int64_t o
 	return at < indices->count ? indices->integers[at] : -1;
 }
 
+/* Files have wrong normals as long as nobody looks at them: those are left out. */
+static void read_normal(const struct faces *faces, uint32_t at, uint32_t face,
+			struct soup_corner *out)
+{
+	const int64_t index =
+		faces->normal_per_vertex
+			? own_index(faces->normal_indices, at, faces->indices->integers[at])
+			: own_index(faces->normal_indices, face, face);
+	int64_t wrong;
+	const float *found = faces->normals ? item(faces->normals, 3, index, &wrong) : NULL;
+
+	memset(out->normal, 0, sizeof(out->normal));
+	if (found)
+		memcpy(out->normal, found, sizeof(out->normal));
+}
+
 /* Reads the corner `at` of face `face`. Returns what it lacks, or NULL. */
 static const char *read_corner(const struct faces *faces, uint32_t at, uint32_t face,
 			       struct soup_corner *out, int64_t *wrong)
@@ -99,6 +116,7 @@ static const char *read_corner(const struct faces *faces, uint32_t at, uint32_t 
 		return "point";
 	memcpy(out->position, found, sizeof(out->position));
 	memcpy(out->rgb, faces->rgb, 3);
+	read_normal(faces, at, face, out);
 	if (faces->colours) {
 		colour_index = faces->colour_per_vertex
 				       ? own_index(faces->colour_indices, at, index)
@@ -166,6 +184,9 @@ int vrml_faces_add(struct soup *soup, const struct vrml_node *node, const uint8_
 		.colours = vrml_member(vrml_get_node(node, "color"), "Color", "color"),
 		.colour_indices = vrml_get(node, "colorIndex"),
 		.colour_per_vertex = vrml_get_integer(node, "colorPerVertex", 1) != 0,
+		.normals = vrml_member(vrml_get_node(node, "normal"), "Normal", "vector"),
+		.normal_indices = vrml_get(node, "normalIndex"),
+		.normal_per_vertex = vrml_get_integer(node, "normalPerVertex", 1) != 0,
 		.uvs = vrml_member(vrml_get_node(node, "texCoord"), "TextureCoordinate", "point"),
 		.uv_indices = vrml_get(node, "texCoordIndex"),
 	};

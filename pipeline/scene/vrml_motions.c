@@ -278,6 +278,13 @@ static bool was_followed(const struct follow *follow, uint32_t route)
 	return false;
 }
 
+/* Normals of what bends are computed for each shape. */
+static bool moves_normals(const struct vrml_route *route)
+{
+	return (*route->from && vrml_is(*route->from, "NormalInterpolator")) ||
+	       (*route->to && vrml_is(*route->to, "NormalInterpolator"));
+}
+
 static int follow_all(const struct follow *follow)
 {
 	const uint32_t first = follow->maker->out.motion_count;
@@ -299,7 +306,7 @@ static int follow_all(const struct follow *follow)
 	}
 	rc = rc > 0 ? 0 : rc;
 	for (uint32_t r = 0; r < follow->count && rc == 0; r++)
-		if (!follow->used[r])
+		if (!follow->used[r] && !moves_normals(follow->routes[r]))
 			diagnostics_add(follow->warnings, 0, follow->routes[r]->file,
 					follow->routes[r]->line,
 					"ROUTE from %.40s to %.40s is not kept; docs/scenery.md "

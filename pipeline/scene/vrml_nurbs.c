@@ -180,7 +180,7 @@ static bool edge_bends(const struct filling *f, const struct corner *a, const st
 
 static int add_triangle(const struct filling *f, const struct corner *const corners[3])
 {
-	struct soup_corner out[3];
+	struct soup_corner out[3] = { 0 };
 
 	for (int i = 0; i < 3; i++) {
 		for (int k = 0; k < 3; k++)

@@ -442,6 +442,22 @@ static void add_fog(const struct walk *walk, const struct vrml_node *node)
 		type && type->count > 0 && strcmp(type->strings[0], "EXPONENTIAL") == 0;
 }
 
+/* Scan and scenery have one light and one background. */
+static void say_left_out(const struct walk *walk, const struct vrml_node *node)
+{
+	const char *instead = NULL;
+
+	if (vrml_is(node, "DirectionalLight") || vrml_is(node, "PointLight") ||
+	    vrml_is(node, "SpotLight"))
+		instead = "sun";
+	if (vrml_is(node, "Background"))
+		instead = "background";
+	if (instead)
+		diagnostics_add(walk->warnings, 0, node->file, node->line,
+				"%s is left out; scan and scenery have the %s of temple.ini",
+				node->type->name, instead);
+}
+
 /* ---- groups */
 
 /* Notes which node a sensor beside these children answers for. */
@@ -472,6 +488,7 @@ static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
 		return add_shape(walk, of, node, parent, is_mirrored);
 	if (vrml_is(of, "Fog"))
 		add_fog(walk, of);
+	say_left_out(walk, of);
 	memcpy(place, parent, sizeof(place));
 	if (vrml_is(of, "Transform")) {
 		float own[16];

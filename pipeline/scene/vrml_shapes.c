@@ -28,7 +28,7 @@ struct shaping {
 static struct soup_corner corner_at(const struct shaping *shaping, float x, float y, float z,
 				    float u, float v)
 {
-	struct soup_corner corner = { { x, y, z }, { u, v }, { 0 } };
+	struct soup_corner corner = { .position = { x, y, z }, .uv = { u, v } };
 
 	memcpy(corner.rgb, shaping->rgb, 3);
 	return corner;
@@ -52,7 +52,7 @@ static int add_box(const struct shaping *shaping)
 
 	vrml_get_floats(size, shaping->node, "size", 3, (const float[3]){ 2, 2, 2 });
 	for (int face = 0; face < 6 && rc == 0; face++) {
-		struct soup_corner corners[4];
+		struct soup_corner corners[4] = { 0 };
 
 		for (int i = 0; i < 4; i++) {
 			const int8_t *sign = faces[face][i];
@@ -86,7 +86,7 @@ static int add_band(const struct shaping *shaping, struct ring low, struct ring 
 	int rc = 0;
 
 	for (int i = 0; i < ROUND && rc == 0; i++) {
-		struct soup_corner corners[4];
+		struct soup_corner corners[4] = { 0 };
 		uint32_t count = 0;
 
 		corners[count++] = ring_corner(shaping, low, i);
@@ -102,7 +102,7 @@ static int add_band(const struct shaping *shaping, struct ring low, struct ring 
 
 static int add_disc(const struct shaping *shaping, struct ring ring, bool is_top)
 {
-	struct soup_corner corners[ROUND];
+	struct soup_corner corners[ROUND] = { 0 };
 
 	for (int i = 0; i < ROUND; i++) {
 		struct soup_corner *corner = &corners[is_top ? i : ROUND - 1 - i];
@@ -200,7 +200,7 @@ static int add_grid(const struct shaping *shaping)
 			static const int8_t steps[4][2] = {
 				{ 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 }
 			};
-			struct soup_corner corners[4];
+			struct soup_corner corners[4] = { 0 };
 
 			for (int k = 0; k < 4; k++) {
 				int64_t x = i + steps[k][0], z = j + steps[k][1];

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "format/normal.h"
 #include "format/scenery_code.h"
 #include "tests/check.h"
 #include "tests/pipeline/scene/little_gltf.h"
@@ -202,6 +203,30 @@ static void a_smooth_metal_shines_and_a_named_material_is_wood(void **state)
 	scenery_finish(&s);
 }
 
+static void normals_of_the_file_are_kept(void **state)
+{
+	static const char lit[] = ACCESSORS
+		"\"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0, \"NORMAL\": 2}}]}],"
+		"\"nodes\": [{\"mesh\": 0}], \"scenes\": [{\"nodes\": [0]}]";
+	/* the first is 0 0 0, so it is that of the face; 0 4 0; 0 4 8 */
+	static const float wanted[3][3] = { { 0, 0, 1 }, { 0, 1, 0 }, { 0, 0.4472f, 0.8944f } };
+	const struct gltf_choice choice = { 0 };
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, lit, &choice, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.meshes[0].vertex_count == 3);
+	for (uint32_t v = 0; v < 3; v++) {
+		float normal[3];
+
+		normal_decode(normal, s.meshes[0].vertices[v].normal);
+		for (int k = 0; k < 3; k++)
+			CHECK(fabsf(normal[k] - wanted[v][k]) < 0.02f);
+	}
+	scenery_finish(&s);
+}
+
 static void a_scene_is_chosen_by_its_name(void **state)
 {
 	const struct gltf_choice b = { .scene = "b" }, c = { .scene = "c" };
@@ -361,6 +386,7 @@ int main(void)
 		cmocka_unit_test(a_step_keeps_each_value_until_the_next_time),
 		cmocka_unit_test(a_spline_is_followed_closely),
 		cmocka_unit_test(a_smooth_metal_shines_and_a_named_material_is_wood),
+		cmocka_unit_test(normals_of_the_file_are_kept),
 		cmocka_unit_test(a_scene_is_chosen_by_its_name),
 		cmocka_unit_test(weights_of_morph_targets_make_shapes),
 		cmocka_unit_test(what_is_refused_names_place_and_cure),

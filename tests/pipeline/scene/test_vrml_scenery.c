@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "format/normal.h"
 #include "format/scenery_code.h"
 #include "tests/check.h"
 
@@ -285,6 +286,43 @@ static void a_material_is_kept_with_its_highlight_and_transparency(void **state)
 	scenery_finish(&s);
 }
 
+static bool has_normal(const struct scenery_mesh *mesh, float x, float y, float z)
+{
+	for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+		float normal[3];
+
+		normal_decode(normal, mesh->vertices[v].normal);
+		if (fabsf(normal[0] - x) < 0.02f && fabsf(normal[1] - y) < 0.02f &&
+		    fabsf(normal[2] - z) < 0.02f)
+			return true;
+	}
+	return false;
+}
+
+/* By vertex, and by face with an index; in a place that scales and mirrors; a missing one is made.
+ */
+static void normals_of_the_file_are_kept(void **state)
+{
+#define FACES "IndexedFaceSet { coord Coordinate { point [ 0 0 0, 1 0 0, 0 1 0 ] } "
+	static const char faces[] =
+		HEAD "Shape { geometry " FACES
+		     "coordIndex [ 0 1 2 ] normal Normal { vector [ 1 0 1, 0 2 0 ] } } }"
+		     "Transform { translation 1 0 0 scale -2 1 1 children Shape { geometry " FACES
+		     "coordIndex [ 0 1 2 -1 0 2 1 ] normalPerVertex FALSE normalIndex [ 1 0 ] "
+		     "normal Normal { vector [ 0 0 -1, 1 0 2 ] } } } }";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, faces, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.mesh_count == 1 && s.meshes[0].vertex_count == 9);
+	CHECK(has_normal(s.meshes, 0.7071f, 0, 0.7071f) && has_normal(s.meshes, 0, 1, 0));
+	CHECK(has_normal(s.meshes, 0, 0, 1)); /* of the third corner, which has none */
+	/* 1 0 2 is -1/2 0 2 there */
+	CHECK(has_normal(s.meshes, -0.2425f, 0, 0.9701f) && has_normal(s.meshes, 0, 0, -1));
+	scenery_finish(&s);
+}
+
 static void the_first_fog_is_kept_in_metres(void **state)
 {
 	static const char foggy[] =
@@ -344,10 +382,9 @@ static void what_is_not_kept_is_named_with_its_line(void **state)
 	static const struct {
 		const char *text, *warning;
 	} cases[] = {
-		{ HEAD
-		  "DEF T TouchSensor {}\nDEF L DirectionalLight {}\nShape { geometry Box {} }\n"
-		  "ROUTE T.isOver TO L.on",
-		  "a.wrl:5: ROUTE from isOver to on is not kept; docs/scenery.md says which are" },
+		{ HEAD "DEF T TouchSensor {}\nDEF L NavigationInfo {}\nShape { geometry Box {} }\n"
+		       "ROUTE T.isActive TO L.set_bind",
+		  "a.wrl:5: ROUTE from isActive to set_bind is not kept; docs/scenery.md says which are" },
 		{ HEAD "DEF G Transform { children Shape { geometry Box {} } }\n"
 		       "DEF C TimeSensor {}\n"
 		       "DEF P PositionInterpolator { key 0 keyValue 0 0 0 }\n"
@@ -355,6 +392,10 @@ static void what_is_not_kept_is_named_with_its_line(void **state)
 		       "ROUTE P.value_changed TO G.translation",
 		  "a.wrl:3: this TimeSensor is started by no TouchSensor's touchTime and does not "
 		  "loop; it was left out" },
+		{ HEAD "Shape { geometry Box {} }\nGroup { children SpotLight {} }",
+		  "a.wrl:3: SpotLight is left out; scan and scenery have the sun of temple.ini" },
+		{ HEAD "Shape { geometry Box {} }\nBackground {}",
+		  "a.wrl:3: Background is left out; scan and scenery have the background of temple.ini" },
 		{ HEAD "Shape { geometry Box {} }\nShape { geometry Group {} }",
 		  "a.wrl:3: Group is no geometry; it was left out" },
 	};
@@ -401,6 +442,7 @@ int main(void)
 		cmocka_unit_test(colours_go_by_their_hue),
 		cmocka_unit_test(what_becomes_transparent_is_a_node),
 		cmocka_unit_test(a_material_is_kept_with_its_highlight_and_transparency),
+		cmocka_unit_test(normals_of_the_file_are_kept),
 		cmocka_unit_test(the_first_fog_is_kept_in_metres),
 		cmocka_unit_test(a_named_material_has_the_substance_that_the_content_says),
 		cmocka_unit_test(what_is_not_kept_is_named_with_its_line),
