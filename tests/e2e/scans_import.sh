@@ -35,6 +35,19 @@ expect 69451 0 none 223 stanford-bunny/reconstruction/bun_zipper.ply
 expect 50000 0 "the scan's own" 0 gargoyle-vertex-colour/gargo.ply
 expect 70000 0 none 0 nefertiti/nefertiti-lowres.obj
 
+# Scenes of VRML97 from archives; what is left out of them is a warning.
+# expect_scene TRIANGLES FILE
+expect_scene() {
+	local report
+	report=$(timeout 60 build/gopura-content import --up y "$scans/vrml97/$2" 2>&1) ||
+		{ echo "FAIL $2: $report"; bad=1; return; }
+	grep -q ": VRML, $1 triangles," <<<"$report" || { echo "FAIL $2: not $1 triangles: $report"; bad=1; }
+}
+expect_scene 6762 HelloWorld.wrl
+expect_scene 3732 Wuson.wrl
+expect_scene 85266 grasshop.wrl
+expect_scene 2000 MotionCaptureROM.WRL
+
 # Venus has 377 faces that show their inside; lighting and culling would make holes of them.
 build/gopura-content import "$scans/venus-cc0-textured/decoded/venus.obj" | grep -q "  377 faces showing the wrong side, turned" || { echo "FAIL venus: faces not turned"; bad=1; }
 
