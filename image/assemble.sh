@@ -95,6 +95,7 @@ cp -r "$here/root/." "$tree/"
 sed -i "s/^compatible=.*/compatible=$compatible/" "$tree/etc/rauc/system.conf"
 install -m 644 systemd/* "$tree/usr/lib/systemd/system/"
 rm "$tree"/usr/lib/systemd/system/gopura-{curator,publisher}.service # for the machine with the scans
+[ -z "${UNITS:-}" ] || cp -r "$UNITS/." "$tree/etc/systemd/system/"
 # The font cache is made here, because fontconfig has nothing to find out at run time.
 sed -i -e 's|<cachedir>/var/cache/fontconfig</cachedir>|<cachedir>/usr/share/fonts/cache</cachedir>|' \
 	-e '/<cachedir prefix="xdg"/d' -e '/<cachedir>~/d' "$tree/etc/fonts/fonts.conf"

@@ -7,6 +7,7 @@
 #                   debian and debian-security: http://snapshot.debian.org/archive/%/20261101T000000Z
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
+#   UNITS=FOLDER    drop-ins for systemd's units, as gopura-kiosk.service.d/later.conf
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
 #   KEYS=FOLDER     key.pem and cert.pem that sign updates, loader.key, secure-boot.key and provenance.key (docs/image.md; default:
 #                   build/image-keys, created if missing)

@@ -206,7 +206,8 @@ def well(machine):
 def updates(machine, sticks):
     stick = lambda name: os.path.join(sticks, name + ".img")
     there = [name[:-4] for name in os.listdir(sticks)]
-    machine.said("slot A, .* is good", BOOT_S)
+    # On a busy machine it was said while the devices were tried.
+    machine.wait_for("good slot A", BOOT_S, lambda: re.search("slot A, .* is good", machine.log()))
     machine.plug(stick("tampered"))
     print(machine.said("tampered.raucb: could not be installed", INSTALL_S))
     machine.unplug()

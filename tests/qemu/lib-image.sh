@@ -16,4 +16,13 @@ mkdir -p "$out"
 conf=$(dirname "$out")
 cp build/qemu/release/root/1.json "$conf/root.json"
 printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
-CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
+# A box's 90 s for a start are too few where another architecture is emulated.
+units=
+if [ "$ARCH" != amd64 ]; then
+	units=$conf/units
+	for unit in kiosk setup system usb; do
+		mkdir -p "$units/gopura-$unit.service.d"
+		printf '[Service]\nTimeoutStartSec=900\n' >"$units/gopura-$unit.service.d/emulated.conf"
+	done
+fi
+UNITS=$units CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
