@@ -289,14 +289,19 @@ static bool place_gain(const struct scene *scene, const struct gain *gain,
 	}
 }
 
-/* Returns the priority of a gain. Worthwhile pages come before pictures, since nothing can be
- * judged without them. 0: not worth fetching. */
+/* What a page leads to, beside its own bytes: nothing is gained before some tiles are here too.
+ * More of it makes pages wait for tiles that are known, less brings pages of many faces before the
+ * first tile of one. */
+enum { BYTES_BEHIND_PAGE = 16000 };
+
+/* Returns the priority of a gain; 0: not worth fetching. */
 static uint32_t gain_priority(const struct scene *scene, const struct gain *gain, uint32_t bytes)
 {
 	uint32_t priority = plan_priority(gain->pixels, bytes);
 	if (priority < least_priority(scene, 1))
 		return 0;
-	return gain->kind == OBJECT_TILE ? priority : MESSAGE_PRIORITY_INDEX + priority / 2;
+	return gain->kind == OBJECT_TILE ? priority
+					 : plan_priority(gain->pixels, bytes + BYTES_BEHIND_PAGE);
 }
 
 static void want_images(struct scene *scene)
@@ -329,10 +334,18 @@ static void want_images(struct scene *scene)
 /* Where the eye may go is felt, not seen: after what gains the picture two pixels a kilobyte. */
 enum { SOLID_PRIORITY = 328000 };
 
-/* What stands beside the scan may fill a quarter of the picture; nobody knows before it is here. */
+/* Where no image is here yet, more follows from patches and pages than they gain by themselves. */
+static bool images_come_first(const struct scene *scene)
+{
+	return scene->options.mode != SCENE_POLYGONS && scene->repository.ready &&
+	       scene->tiles.key_count == 0 && scene->want_count > 0;
+}
+
+/* What stands beside the scan may fill a sixteenth of the picture; nobody knows before it is here.
+ */
 static uint32_t scenery_priority(const struct scene *scene, uint32_t bytes)
 {
-	return plan_priority(scene->view.picture_px / 4 * misplaced(INFINITY), bytes);
+	return plan_priority(scene->view.picture_px / 16 * misplaced(INFINITY), bytes);
 }
 
 static void want_surroundings(struct scene *scene)
@@ -391,15 +404,14 @@ void scene_list_wants(struct scene *scene)
 	if (!scene->repository.ready && images)
 		want_child_of_root(scene, OBJECT_SAMPLES, ROOT_CHILD_SAMPLES,
 				   2 * MESSAGE_PRIORITY_INDEX - 1);
-	/* Before, nothing better may be asked for yet, and a range under way is not held. */
-	if (scene_first_cut_is_here(scene))
-		want_surroundings(scene);
 	if (scene->has_hierarchy)
 		want_groups(scene);
 	if (scene->has_hierarchy && scene->geometry.loaded[0] && scene_has_labels(scene))
 		want_labels(scene);
 	if (scene->repository.ready && scene->has_hierarchy && images)
 		want_images(scene);
+	if (scene_first_cut_is_here(scene) && !images_come_first(scene))
+		want_surroundings(scene);
 	if (scene->want_count > 0)
 		qsort(scene->wants, scene->want_count, sizeof(*scene->wants), by_priority);
 	limit_to_room(scene);

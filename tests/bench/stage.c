@@ -145,6 +145,7 @@ void stage_begin(struct stage *stage, const struct scene_options *options)
 	stage->bytes = stage->objects = 0;
 	stage->bytes_most = UINT64_MAX;
 	map_clear(&stage->had);
+	map_clear(&stage->asked);
 	stage_must(scene_create(&stage->scene, &chosen), "scene");
 	stage_must(scene_open(stage->scene, stage->root, stage->root_bytes), "scene");
 }
@@ -169,6 +170,7 @@ void stage_close(struct stage *stage)
 {
 	scene_destroy(stage->scene);
 	map_finish(&stage->had);
+	map_finish(&stage->asked);
 	gl_target_destroy(&stage->target);
 	headless_destroy(stage->headless);
 	locator_finish(&stage->locator);
@@ -196,52 +198,89 @@ static void land(struct stage *stage, const struct message_want *want)
 		stage->objects++;
 		stage_must(map_set(&stage->had, hash_key(want->hash), 1), "memory");
 	}
+	map_remove(&stage->asked, hash_key(want->hash));
 	scene_give(stage->scene, want->hash, bytes);
 }
 
-static bool is_in_flight(const struct stage *stage, struct hash hash)
+/* As the fetcher: what takes more than half a turn comes in segments of a quarter. */
+static uint32_t segment_bytes(const struct stage *stage, uint64_t left, uint64_t turn)
 {
-	for (uint32_t i = 0; i < stage->flights; i++)
-		if (hash_equal(stage->flight[i].want.hash, hash))
-			return true;
-	return false;
+	if (stage->options.bits_a_second == 0 || left <= turn / 2)
+		return (uint32_t)left;
+	return (uint32_t)(turn / 4);
 }
 
-/* Sends for what is wanted most, as far as the window goes. */
+static uint64_t turn_bytes(const struct stage *stage)
+{
+	uint64_t turn = stage->options.window_bytes ? stage->options.window_bytes : WINDOW_BYTES;
+
+	/* A fetcher does not wait for frames: in a long one the line carries more. */
+	if (stage->options.work_clock)
+		turn += stage->options.bits_a_second / 8 * (uint64_t)stage->passed_us / 1000000;
+	return turn;
+}
+
+/* Returns the bytes on their way of what is at least as urgent. */
+static uint64_t ahead_of(const struct stage *stage, uint32_t priority)
+{
+	uint64_t ahead = 0;
+
+	for (uint32_t i = 0; i < stage->flights; i++)
+		if (stage->flight[i].want.priority >= priority)
+			ahead += stage->flight[i].bytes;
+	return ahead;
+}
+
+/* Returns when so many bytes have come over the line. */
+static int64_t carry(struct stage *stage, int64_t now_us, uint32_t bytes)
+{
+	int64_t from_us = now_us + stage->options.latency_us;
+
+	from_us = from_us > stage->link_free_us ? from_us : stage->link_free_us;
+	stage->link_free_us = from_us + (int64_t)((bytes + STAGE_OBJECT_OVERHEAD) * 8000000ull /
+						  stage->options.bits_a_second);
+	return stage->link_free_us;
+}
+
+/* Sends for an object, or for as many segments of it as fit into the turn. Returns false if more
+ * would have to wait. */
+static bool send_for_object(struct stage *stage, const struct message_want *want, uint64_t turn,
+			    int64_t now_us)
+{
+	const map_key key = hash_key(want->hash);
+	const uint64_t known = map_get(&stage->asked, key);
+	uint64_t asked = known == MAP_NONE ? 0 : known;
+
+	while (asked < want->size) {
+		struct stage_flight flight = { .want = *want };
+		const uint64_t ahead = ahead_of(stage, want->priority);
+
+		flight.bytes = segment_bytes(stage, want->size - asked, turn);
+		if (stage->flights == STAGE_IN_FLIGHT || stage->bytes + ahead >= stage->bytes_most)
+			return false;
+		if (stage->options.bits_a_second > 0 && ahead > 0 && ahead + flight.bytes > turn)
+			return false;
+		flight.due_us = now_us + stage->options.latency_us;
+		if (stage->options.bits_a_second > 0 && !was_had(stage, want->hash))
+			flight.due_us = carry(stage, now_us, flight.bytes);
+		asked += flight.bytes;
+		flight.last = asked == want->size;
+		stage->flight[stage->flights++] = flight;
+		stage_must(map_set(&stage->asked, key, asked), "memory");
+	}
+	return true;
+}
+
+/* Sends for what is wanted most, as far as a turn goes. */
 static void send_for(struct stage *stage, int64_t now_us)
 {
 	struct message_want wants[2 * STAGE_IN_FLIGHT];
 	size_t count = scene_wants(stage->scene, wants, 2 * STAGE_IN_FLIGHT);
-	const uint64_t rate = stage->options.bits_a_second;
-	uint64_t ahead = 0, window = stage->options.window_bytes;
+	const uint64_t turn = turn_bytes(stage);
 
-	if (window == 0)
-		window = WINDOW_BYTES;
-
-	/* A fetcher does not wait for frames: in a long one the line carries more. */
-	if (stage->options.work_clock)
-		window += rate / 8 * (uint64_t)stage->passed_us / 1000000;
-
-	for (uint32_t i = 0; i < stage->flights; i++)
-		ahead += stage->flight[i].want.size;
-	for (size_t i = 0; i < count && stage->flights < STAGE_IN_FLIGHT; i++) {
-		int64_t from_us = now_us + stage->options.latency_us;
-
-		if (is_in_flight(stage, wants[i].hash))
-			continue;
-		if (stage->bytes + ahead >= stage->bytes_most)
+	for (size_t i = 0; i < count; i++)
+		if (!send_for_object(stage, &wants[i], turn, now_us))
 			return;
-		if (rate > 0 && ahead > 0 && ahead + wants[i].size > window)
-			return;
-		ahead += wants[i].size;
-		if (rate > 0 && !was_had(stage, wants[i].hash)) {
-			from_us = from_us > stage->link_free_us ? from_us : stage->link_free_us;
-			from_us += (int64_t)((wants[i].size + STAGE_OBJECT_OVERHEAD) * 8000000ull /
-					     rate);
-			stage->link_free_us = from_us;
-		}
-		stage->flight[stage->flights++] = (struct stage_flight){ wants[i], from_us };
-	}
 }
 
 static void pass_link(struct stage *stage)
@@ -254,10 +293,12 @@ static void pass_link(struct stage *stage)
 	for (uint32_t i = 0; i < count; i++) {
 		const struct stage_flight flight = stage->flight[i];
 
-		if (flight.due_us <= now_us)
+		if (flight.due_us > now_us)
+			stage->flight[kept++] = flight;
+		else if (flight.last)
 			land(stage, &flight.want);
 		else
-			stage->flight[kept++] = flight;
+			stage->bytes += STAGE_OBJECT_OVERHEAD;
 	}
 	stage->flights = kept;
 }

@@ -29,9 +29,11 @@ struct stage_options {
 	uint64_t window_bytes; /* asked for ahead; 0: 64 KiB */
 };
 
-/* An object asked for and not there yet. */
+/* An object, or a segment of it, asked for and not there yet. */
 struct stage_flight {
 	struct message_want want;
+	uint32_t bytes;
+	bool last; /* of its object */
 	int64_t due_us;
 };
 
@@ -48,6 +50,7 @@ struct stage {
 	uint32_t flights;
 	int64_t link_free_us;
 	struct map had;          /* by hash: what a cache would hold */
+	struct map asked;        /* by hash: bytes sent for of what is not there yet */
 	uint64_t bytes, objects; /* that came for the first time, with what their transport adds */
 	int64_t work_us;         /* of this thread, for the last frame */
 	int64_t wall_us;         /* of the machine's clock, for the last frame */
