@@ -79,6 +79,17 @@ static bool place_is_sane(const struct scenery_place *place)
 	       is_unit(place->stretch, 4);
 }
 
+static bool sight_is_sane(const struct scenery_sight *sight)
+{
+	const float *at = sight->at;
+	const bool is_zero = at[0] == 0 && at[1] == 0 && at[2] == 0;
+
+	if (sight->kind == SCENERY_SIGHT_LEVEL)
+		return are_near(at, 3) && sight->from >= 0 && sight->to > sight->from;
+	return (unsigned)sight->kind < SCENERY_SIGHT_KINDS && sight->from == 0 && sight->to == 0 &&
+	       (is_zero || (sight->kind == SCENERY_SIGHT_FACES && is_unit(at, 3)));
+}
+
 static bool nodes_are_sane(const struct scenery *scenery)
 {
 	uint8_t depth[SCENERY_NODES_MAX];
@@ -95,7 +106,8 @@ static bool nodes_are_sane(const struct scenery *scenery)
 		    (!is_root || node->layer >= scenery->layer_count))
 			return false;
 		depth[i] = is_root ? 1 : (uint8_t)(depth[node->parent] + 1);
-		if (depth[i] > SCENERY_DEPTH_MAX || !place_is_sane(&node->place))
+		if (depth[i] > SCENERY_DEPTH_MAX || !place_is_sane(&node->place) ||
+		    !sight_is_sane(&node->sight))
 			return false;
 	}
 	return true;

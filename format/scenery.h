@@ -51,12 +51,32 @@ struct scenery_place {
 	float stretch[4]; /* axes of the scale */
 };
 
+/* A node's sight: what the place of the eye does to it. */
+enum scenery_sight_kind {
+	SCENERY_SIGHT_NONE,
+	SCENERY_SIGHT_FACES, /* z of the node turns towards the eye: VRML97's Billboard */
+	SCENERY_SIGHT_LEVEL, /* it is seen from some distances alone: a level of VRML97's LOD */
+	SCENERY_SIGHT_KINDS
+};
+
+/* Its numbers are in the node's own coordinates, as its place sets them. */
+struct scenery_sight {
+	enum scenery_sight_kind kind;
+	/* Faces: the axis that it turns about, a unit vector; 0 0 0: its z points at the eye, and
+	 * its y up in the picture. Level: from where the distance is measured. */
+	float at[3];
+	/* Level: seen while the eye is at least `from` and less than `to` away; `to` may be
+	 * infinite. Else 0. */
+	float from, to;
+};
+
 struct scenery_node {
 	uint32_t parent; /* a node before this one, or SCENERY_NONE */
 	/* Of a node without parent: its layer, or SCENERY_NONE, which is always shown. All others
 	 * are in the layer of their parent and have SCENERY_NONE here. */
 	uint32_t layer;
 	struct scenery_place place;
+	struct scenery_sight sight;
 };
 
 /* What light does on a surface; geometry/appearance.h has the formulas. Zeroed, with an opacity of

@@ -11,8 +11,9 @@
 #include "format/scenery_texture_code.h"
 
 enum {
-	VERSION = 5,
-	VERSION_COLOURS = 4,     /* without normal maps; what has none is written so */
+	VERSION = 6,
+	VERSION_SIGHTLESS = 5,   /* without sights; what has none is written so */
+	VERSION_COLOURS = 4,     /* without normal maps; likewise */
 	VERSION_NO_TEXTURES = 3, /* without pictures; likewise */
 	VERSION_STIFF = 2,       /* without shapes and drags */
 	VERSION_PLAIN = 1, /* without materials and fog; a mesh said whether it has two sides */
@@ -30,6 +31,7 @@ enum {
 	SHAPE_VERTEX_BYTES = 8,
 	LAYER_BYTES = 1,
 	TITLE_BYTES = 4,
+	SIGHT_BYTES = 4 + 1 + 5 * 4,
 };
 
 static const char magic[4] = { 'G', 'P', 's', 'y' };
@@ -276,6 +278,58 @@ static int get_shapes(struct reader *in, struct scenery *scenery)
 	return 0;
 }
 
+/* ---- sights: of the nodes that have one */
+
+static uint32_t count_sights(const struct scenery *scenery)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = 0; i < scenery->node_count; i++)
+		count += scenery->nodes[i].sight.kind != SCENERY_SIGHT_NONE;
+	return count;
+}
+
+static void put_sights(struct buffer *out, const struct scenery *scenery)
+{
+	buffer_put_u32(out, count_sights(scenery));
+	for (uint32_t i = 0; i < scenery->node_count; i++) {
+		const struct scenery_sight *sight = &scenery->nodes[i].sight;
+
+		if (sight->kind == SCENERY_SIGHT_NONE)
+			continue;
+		buffer_put_u32(out, i);
+		buffer_put_u8(out, (uint8_t)sight->kind);
+		scenery_put_floats(out, sight->at, 3);
+		buffer_put_f32(out, sight->from);
+		buffer_put_f32(out, sight->to);
+	}
+}
+
+static int get_sights(struct reader *in, struct scenery *scenery)
+{
+	const uint32_t count = get_count(in, SCENERY_NODES_MAX, SIGHT_BYTES);
+	uint32_t next = 0;
+
+	if (count < 1)
+		return -EBADMSG;
+	for (uint32_t i = 0; i < count; i++) {
+		const uint32_t number = reader_u32(in);
+		struct scenery_sight *sight;
+
+		if (number < next || number >= scenery->node_count)
+			return -EBADMSG;
+		next = number + 1;
+		sight = &scenery->nodes[number].sight;
+		sight->kind = reader_u8(in);
+		if (sight->kind == SCENERY_SIGHT_NONE)
+			return -EBADMSG;
+		scenery_get_floats(in, sight->at, 3);
+		sight->from = reader_f32(in);
+		sight->to = reader_f32(in);
+	}
+	return 0;
+}
+
 /* ---- the whole */
 
 static void put_raw(struct buffer *out, const struct scenery *scenery, uint8_t version)
@@ -303,14 +357,18 @@ static void put_raw(struct buffer *out, const struct scenery *scenery, uint8_t v
 	put_shapes(out, scenery);
 	if (version > VERSION_NO_TEXTURES)
 		scenery_put_textures(out, scenery, version > VERSION_COLOURS);
+	if (version > VERSION_SIGHTLESS)
+		put_sights(out, scenery);
 }
 
 /* The oldest version that says it all, so that older terminals read it. */
 static uint8_t version_of(const struct scenery *scenery)
 {
+	if (count_sights(scenery) > 0)
+		return VERSION;
 	for (uint32_t i = 0; i < scenery->material_count; i++)
 		if (scenery->materials[i].normals > 0)
-			return VERSION;
+			return VERSION_SIGHTLESS;
 	return scenery->texture_count > 0 ? VERSION_COLOURS : VERSION_NO_TEXTURES;
 }
 
@@ -425,6 +483,10 @@ static int get_raw(struct scenery *out, struct bytes raw, uint8_t version)
 	}
 	if (rc == 0 && version > VERSION_NO_TEXTURES)
 		rc = scenery_get_textures(&in, out, version > VERSION_COLOURS);
+	if (rc == 0 && version > VERSION_SIGHTLESS)
+		rc = get_sights(&in, out);
+	else if (rc == 0 && version > VERSION_NO_TEXTURES && out->texture_count == 0)
+		rc = -EBADMSG;
 	if (rc == 0) {
 		if (in.failed || reader_left(&in) > 0 || !scenery_is_sane(out))
 			rc = -EBADMSG;

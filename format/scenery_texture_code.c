@@ -86,10 +86,9 @@ int scenery_get_textures(struct reader *in, struct scenery *scenery, bool has_no
 	const uint32_t count = reader_u32(in);
 	int rc = 0;
 
-	if (in->failed || count < 1 || count > SCENERY_TEXTURES_MAX ||
-	    count > reader_left(in) / TEXTURE_BYTES)
+	if (in->failed || count > SCENERY_TEXTURES_MAX || count > reader_left(in) / TEXTURE_BYTES)
 		return -EBADMSG;
-	scenery->textures = calloc(count, sizeof(*scenery->textures));
+	scenery->textures = calloc(count + 1, sizeof(*scenery->textures));
 	if (!scenery->textures)
 		return -ENOMEM;
 	scenery->texture_count = count;

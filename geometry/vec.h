@@ -113,4 +113,40 @@ static inline void matrix_multiply(float out[16], const float a[16], const float
 	}
 }
 
+/* Sets out to where a matrix whose last row is 0 0 0 1 brings a place; out is not `at`. */
+static inline void matrix_place(float out[3], const float m[16], const float at[3])
+{
+	for (int row = 0; row < 3; row++)
+		out[row] = m[row] * at[0] + m[4 + row] * at[1] + m[8 + row] * at[2] + m[12 + row];
+}
+
+/* The same for a direction. */
+static inline void matrix_direction(float out[3], const float m[16], const float along[3])
+{
+	for (int row = 0; row < 3; row++)
+		out[row] = m[row] * along[0] + m[4 + row] * along[1] + m[8 + row] * along[2];
+}
+
+/* Sets out to the inverse of a matrix whose last row is 0 0 0 1. Returns 0 where it has none; out
+ * is then not set. */
+static inline int matrix_invert(float out[16], const float m[16])
+{
+	float rows[3][3], det;
+
+	vec_cross(rows[0], &m[4], &m[8]);
+	vec_cross(rows[1], &m[8], &m[0]);
+	vec_cross(rows[2], &m[0], &m[4]);
+	det = vec_dot(&m[0], rows[0]);
+	if (!(fabsf(det) > 1e-18f))
+		return 0;
+	for (int row = 0; row < 3; row++) {
+		for (int k = 0; k < 3; k++)
+			out[4 * k + row] = rows[row][k] / det;
+		out[12 + row] = -vec_dot(rows[row], &m[12]) / det;
+		out[4 * row + 3] = 0;
+	}
+	out[15] = 1;
+	return 1;
+}
+
 #endif

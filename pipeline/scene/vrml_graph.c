@@ -104,7 +104,7 @@ bool vrml_event_sets(const char *event, const char *field)
 	return strcmp(strncmp(event, "set_", 4) == 0 ? event + 4 : event, field) == 0;
 }
 
-struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *count)
+struct vrml_node *const *vrml_levels(const struct vrml_node *node, uint32_t *count)
 {
 	static const char *const fields[] = { "children", "choice", "level" };
 	const struct vrml_value *value = NULL;
@@ -124,9 +124,16 @@ struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *c
 		*count = choice >= 0 && (uint32_t)choice < value->count;
 		return value->nodes + (*count ? choice : 0);
 	}
-	if (vrml_is(node, "LOD"))
-		*count = value->count > 0;
 	return value->nodes;
+}
+
+struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *count)
+{
+	struct vrml_node *const *children = vrml_levels(node, count);
+
+	if (vrml_is(node, "LOD") && *count > 1)
+		*count = 1;
+	return children;
 }
 
 const struct vrml_node *vrml_node_of(const struct vrml_node *node, const char *field,

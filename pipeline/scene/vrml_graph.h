@@ -21,6 +21,8 @@ bool vrml_mirrors(const float place[16]);
 /* Returns the nodes below a node that are seen; *count is 0 where there are none. Of a Switch it is
  * the chosen node, of an LOD the finest. */
 struct vrml_node *const *vrml_children(const struct vrml_node *node, uint32_t *count);
+/* The same with all levels of an LOD. */
+struct vrml_node *const *vrml_levels(const struct vrml_node *node, uint32_t *count);
 /* Returns whether the node is of that type. */
 bool vrml_is(const struct vrml_node *node, const char *type);
 /* Returns whether an event sets a field: it has its name, with or without set_ before it. */

@@ -1,5 +1,6 @@
-/* Walks the graph of a scene. A Transform with something moving below it becomes a node of the
- * scenery; the places of all others are put into the triangles, which costs a terminal nothing. */
+/* Walks the graph of a scene. A Transform with something moving below it, or something that depends
+ * on the eye's place, becomes a node of the scenery; the places of all others are put into the
+ * triangles, which costs a terminal nothing. */
 #include "pipeline/scene/vrml_scenery.h"
 
 #include <errno.h>
@@ -17,7 +18,7 @@
 #include "pipeline/scene/vrml_motions.h"
 #include "pipeline/scene/vrml_shapes.h"
 
-/* Whether a node, or something below it, moves or is touched. */
+/* Whether a node, or something below it, moves, is touched, or depends on the eye's place. */
 enum moving { STILL, MOVING, TARGET /* moves, and what is above it is not judged yet */ };
 
 struct walk {
@@ -100,6 +101,23 @@ static bool is_set(const struct walk *walk, const struct vrml_node *node, const 
 	return false;
 }
 
+/* Returns the children of a node: of an LOD that says no distances, the first level. */
+static struct vrml_node *const *children_of(const struct vrml_node *node, uint32_t *count)
+{
+	const struct vrml_value *range = vrml_is(node, "LOD") ? vrml_get(node, "range") : NULL;
+
+	return range && range->count > 0 ? vrml_levels(node, count) : vrml_children(node, count);
+}
+
+/* Whether the eye's place chooses among the children. */
+static bool has_levels(const struct vrml_node *node)
+{
+	uint32_t count;
+
+	(void)children_of(node, &count);
+	return vrml_is(node, "LOD") && count > 1;
+}
+
 /* Marks the nodes above what moves. Each is judged once. */
 static int mark(struct walk *walk, const struct vrml_node *node)
 {
@@ -107,7 +125,8 @@ static int mark(struct walk *walk, const struct vrml_node *node)
 	struct vrml_node *const *children;
 	uint32_t count;
 	uint64_t was = map_get(&walk->moving, key_of(node));
-	bool moves = was == TARGET || has_sensor(node);
+	bool moves =
+		was == TARGET || has_sensor(node) || vrml_is(node, "Billboard") || has_levels(node);
 	int rc = 0;
 
 	if (was != MAP_NONE && was != TARGET)
@@ -123,7 +142,7 @@ static int mark(struct walk *walk, const struct vrml_node *node)
 			   : NULL;
 	moves = moves || (material && is_moving(walk, material)) ||
 		(vrml_is(node, "Shape") && bender_of(walk, node));
-	children = vrml_children(node, &count);
+	children = children_of(node, &count);
 	for (uint32_t i = 0; i < count && rc == 0; i++) {
 		rc = mark(walk, children[i]);
 		moves = moves || is_moving(walk, children[i]);
@@ -155,6 +174,13 @@ static void get_place(struct scenery_place *out, const struct vrml_node *node)
 	get_turn(out->stretch, node, "scaleOrientation");
 }
 
+static void get_facing(struct scenery_sight *out, const struct vrml_node *billboard)
+{
+	out->kind = SCENERY_SIGHT_FACES;
+	vrml_get_floats(out->at, billboard, "axisOfRotation", 3, (const float[3]){ 0, 1, 0 });
+	vec_normalise(out->at);
+}
+
 static int note(struct walk *walk, const struct vrml_node *of, uint32_t node)
 {
 	return vrml_instances_add(&walk->instances,
@@ -172,6 +198,8 @@ static int add_node(struct walk *walk, const struct vrml_node *of, uint32_t pare
 
 	if (vrml_is(of, "Transform"))
 		get_place(&node.place, of);
+	if (vrml_is(of, "Billboard"))
+		get_facing(&node.sight, of);
 	rc = scenery_add_node(walk->maker, &node, number);
 	if (rc == 0)
 		rc = note(walk, of, *number);
@@ -472,6 +500,55 @@ static int note_sensors(struct walk *walk, struct vrml_node *const *children, ui
 	return rc;
 }
 
+/* Adds a node for a level of an LOD, below *node, which is set to it. As 6.26 has it, the last
+ * level goes on, and those without a distance are not seen: *is_seen is then false. */
+static int add_level(struct walk *walk, const struct vrml_node *lod, uint32_t level, uint32_t count,
+		     uint32_t *node, bool *is_seen)
+{
+	const struct vrml_value *range = vrml_get(lod, "range");
+	struct scenery_node own = { .parent = *node,
+				    .layer = SCENERY_NONE,
+				    .place = scenery_at_rest,
+				    .sight = { .kind = SCENERY_SIGHT_LEVEL, .to = INFINITY } };
+	int rc;
+
+	*is_seen = level <= range->count;
+	if (!*is_seen)
+		return 0;
+	vrml_get_floats(own.sight.at, lod, "center", 3, (const float[3]){ 0 });
+	if (level > 0)
+		own.sight.from = range->floats[level - 1];
+	if (level + 1 < count && level < range->count)
+		own.sight.to = range->floats[level];
+	if (!(own.sight.to > own.sight.from))
+		return diagnostics_add(walk->diagnostics, -EBADMSG, lod->file, lod->line,
+				       "LOD has distances in range that do not ascend from above "
+				       "0; correct them");
+	rc = scenery_add_node(walk->maker, &own, node);
+	return rc < 0 ? fail(walk, rc, lod) : 0;
+}
+
+static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
+		 const float parent[16], bool is_mirrored);
+
+static int visit_levels(struct walk *walk, const struct vrml_node *lod, uint32_t node,
+			const float place[16], bool is_mirrored)
+{
+	uint32_t count;
+	struct vrml_node *const *levels = vrml_levels(lod, &count);
+	int rc = 0;
+
+	for (uint32_t i = 0; i < count && rc == 0; i++) {
+		uint32_t own = node;
+		bool is_seen;
+
+		rc = add_level(walk, lod, i, count, &own, &is_seen);
+		if (rc == 0 && is_seen)
+			rc = visit(walk, levels[i], own, place, is_mirrored);
+	}
+	return rc;
+}
+
 static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
 		 const float parent[16], bool is_mirrored)
 {
@@ -498,7 +575,10 @@ static int visit(struct walk *walk, const struct vrml_node *of, uint32_t node,
 		if (!is_moving(walk, of))
 			vrml_transform(place, parent, of);
 	}
-	if (is_moving(walk, of) && (vrml_is(of, "Transform") || has_sensor(of)))
+	if (has_levels(of))
+		return visit_levels(walk, of, node, place, is_mirrored);
+	if (is_moving(walk, of) &&
+	    (vrml_is(of, "Transform") || vrml_is(of, "Billboard") || has_sensor(of)))
 		rc = add_node(walk, of, node, &node);
 	children = vrml_children(of, &count);
 	if (rc == 0)

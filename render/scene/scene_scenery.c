@@ -94,6 +94,7 @@ void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 
 	if (!is_shown(scene) || frame->shares)
 		return;
+	pose_look(&own->pose, frame->view->eye_m, frame->view->up);
 	scenery_picture_bend(&own->picture, &own->pose);
 	if (own->is_ready)
 		own->lacks = !scenery_picture_draw(&own->picture, &own->pose, frame);

@@ -17,34 +17,6 @@ void drag_init(struct drag *drag, const struct scenery_drag *of)
 	memcpy(drag->value, of->offset, sizeof(drag->value));
 }
 
-/* Sets out to the inverse of a matrix whose last row is 0 0 0 1. */
-static bool invert(float out[16], const float m[16])
-{
-	float rows[3][3], det;
-
-	vec_cross(rows[0], &m[4], &m[8]);
-	vec_cross(rows[1], &m[8], &m[0]);
-	vec_cross(rows[2], &m[0], &m[4]);
-	det = vec_dot(&m[0], rows[0]);
-	if (!(fabsf(det) > 1e-18f))
-		return false;
-	memset(out, 0, 16 * sizeof(*out));
-	for (int row = 0; row < 3; row++) {
-		for (int k = 0; k < 3; k++)
-			out[4 * k + row] = rows[row][k] / det;
-		out[12 + row] = -vec_dot(rows[row], &m[12]) / det;
-	}
-	out[15] = 1;
-	return true;
-}
-
-static void to_handle(float out[3], const float m[16], const float at[3], bool is_place)
-{
-	for (int row = 0; row < 3; row++)
-		out[row] = m[row] * at[0] + m[4 + row] * at[1] + m[8 + row] * at[2] +
-			   (is_place ? m[12 + row] : 0);
-}
-
 /* A ray in the handle's metres; its direction has the length 1. */
 struct ray {
 	float from[3], along[3];
@@ -54,8 +26,8 @@ static struct ray ray_of(const struct drag *drag, const float from_m[3], const f
 {
 	struct ray ray;
 
-	to_handle(ray.from, drag->to_handle, from_m, true);
-	to_handle(ray.along, drag->to_handle, direction, false);
+	matrix_place(ray.from, drag->to_handle, from_m);
+	matrix_direction(ray.along, drag->to_handle, direction);
 	vec_normalise(ray.along);
 	return ray;
 }
@@ -233,9 +205,9 @@ bool drag_begin(struct drag *drag, const struct scenery_drag *of, const float ha
 {
 	struct ray ray;
 
-	if (!invert(drag->to_handle, handle))
+	if (!matrix_invert(drag->to_handle, handle))
 		return false;
-	to_handle(drag->begin, drag->to_handle, point_m, true);
+	matrix_place(drag->begin, drag->to_handle, point_m);
 	ray = ray_of(drag, point_m, direction);
 	if (of->kind == SCENERY_DRAG_CYLINDER)
 		begin_cylinder(drag, of, &ray);

@@ -72,6 +72,77 @@ static void root_range(const struct pose *pose, uint32_t layer, float *low, floa
 	*high = *low + pose->layer_shares[layer];
 }
 
+/* Turns what stands in a node about the axis until z is in the plane of axis and eye. VRML97 6.6.
+ */
+static void face_about(float turn[16], const float axis[3], const float eye[3])
+{
+	const float across = axis[1] * eye[0] - axis[0] * eye[1]; /* axis . (z x eye) */
+	float q[4];
+
+	turn_about(q, axis, atan2f(across, eye[2] - axis[2] * vec_dot(axis, eye)));
+	turn_matrix(turn, q);
+}
+
+/* Turns it until z points at the eye and y is up in its picture, as far as it can be. */
+static void face_fully(float turn[16], const float eye[3], const float up[3])
+{
+	float axes[3][3]; /* x, y, z */
+
+	vec_copy(axes[2], eye);
+	vec_cross(axes[0], up, eye);
+	if (!(vec_normalise(axes[2]) > 0) || !(vec_normalise(axes[0]) > 0))
+		return;
+	vec_cross(axes[1], axes[2], axes[0]);
+	for (int k = 0; k < 3; k++)
+		vec_copy(&turn[4 * k], axes[k]);
+}
+
+static void face(float matrix[16], const struct scenery_sight *sight, const float eye[3],
+		 const float up[3])
+{
+	float turn[16] = { [0] = 1, [5] = 1, [10] = 1, [15] = 1 }, turned[16];
+
+	if (vec_length(sight->at) > 0)
+		face_about(turn, sight->at, eye);
+	else
+		face_fully(turn, eye, up);
+	matrix_multiply(turned, matrix, turn);
+	memcpy(matrix, turned, sizeof(turned));
+}
+
+/* How far the eye is beyond a distance, 0 to 1: two levels share the pixels 3 % before and after
+ * it, so that none appears at once, and a hand that trembles makes nothing flicker. */
+static float share_beyond(float distance, float border)
+{
+	const float half = 0.03f;
+
+	if (distance >= (1 + half) * border)
+		return 1;
+	if (distance <= (1 - half) * border)
+		return 0;
+	return (distance / border - (1 - half)) / (2 * half);
+}
+
+/* Does to a node what the place of the eye does. */
+static void look(const struct pose *pose, const struct scenery_sight *sight, struct pose_node *node)
+{
+	float to_node[16], eye[3], up[3];
+
+	if (sight->kind == SCENERY_SIGHT_NONE || !matrix_invert(to_node, node->matrix))
+		return;
+	matrix_place(eye, to_node, pose->eye_m);
+	matrix_direction(up, to_node, pose->up);
+	if (sight->kind == SCENERY_SIGHT_LEVEL) {
+		const float distance = vec_distance(eye, sight->at), low = node->low;
+		const float width = node->high - low;
+
+		node->low = low + width * (1 - share_beyond(distance, sight->from));
+		node->high = low + width * (1 - share_beyond(distance, sight->to));
+	} else {
+		face(node->matrix, sight, eye, up);
+	}
+}
+
 static void place_nodes(struct pose *pose)
 {
 	for (uint32_t i = 0; i < pose->scenery->node_count; i++) {
@@ -91,6 +162,7 @@ static void place_nodes(struct pose *pose)
 			node->low = parent->low;
 			node->high = parent->high;
 		}
+		look(pose, &from->sight, node);
 		node->high = node->low + (node->high - node->low) * pose->opacity[i];
 	}
 }
@@ -165,6 +237,7 @@ int pose_init(struct pose *pose, const struct scenery *scenery)
 	for (uint32_t i = 0; i < nodes; i++) {
 		pose->places[i] = scenery->nodes[i].place;
 		pose->opacity[i] = 1;
+		pose->has_sights |= scenery->nodes[i].sight.kind != SCENERY_SIGHT_NONE;
 	}
 	for (uint32_t i = 0; i < scenery->motion_count; i++)
 		pose->motions[i].runs = !is_touched(scenery, i);
@@ -186,6 +259,16 @@ void pose_finish(struct pose *pose)
 	free(pose->drags);
 	bend_finish(&pose->bend);
 	*pose = (struct pose){ 0 };
+}
+
+void pose_look(struct pose *pose, const float eye_m[3], const float up[3])
+{
+	if (!pose->has_sights || (memcmp(pose->eye_m, eye_m, sizeof(pose->eye_m)) == 0 &&
+				  memcmp(pose->up, up, sizeof(pose->up)) == 0))
+		return;
+	vec_copy(pose->eye_m, eye_m);
+	vec_copy(pose->up, up);
+	place_nodes(pose);
 }
 
 /* ---- time */

@@ -1,5 +1,5 @@
-/* How scenery stands at a moment: which motions run, where each node is, and which layer is seen.
- * Pure: no GL, no clock. */
+/* How scenery stands at a moment: which motions run, where each node is, also for the eye, and
+ * which layer and levels are seen. Pure: no GL, no clock. */
 #ifndef GOPURA_RENDER_SCENERY_POSE_H
 #define GOPURA_RENDER_SCENERY_POSE_H
 
@@ -33,6 +33,8 @@ struct pose {
 	uint32_t layer;   /* the chosen one */
 	float layer_shares[SCENERY_LAYERS_MAX]; /* their sum is 1 */
 	float appeared;                         /* all of it, 0 to 1 */
+	float eye_m[3], up[3];                  /* as pose_look has them; zero before */
+	bool has_sights;                        /* some node depends on them */
 };
 
 /* Stands as the content says, with the first layer; nothing has appeared yet. scenery is borrowed
@@ -40,6 +42,9 @@ struct pose {
 must_check int pose_init(struct pose *pose, const struct scenery *scenery);
 void pose_finish(struct pose *pose); /* NULL and zeroed are fine */
 
+/* Places nodes for an eye: where it is, and the direction that is up in its picture. Call it before
+ * a picture is drawn; rays meet what was drawn last. */
+void pose_look(struct pose *pose, const float eye_m[3], const float up[3]);
 /* Lets time pass. Returns whether anything that is drawn changed. */
 bool pose_step(struct pose *pose, float passed_ms);
 /* Returns whether pose_step would change anything. */

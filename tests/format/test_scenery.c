@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <zstd.h>
+
 #include "format/picture.h"
 #include "format/scenery_code.h"
 #include "format/scenery_texture_code.h"
@@ -183,6 +185,81 @@ static void normal_maps_come_back_too(void **state)
 	buffer_finish(&jpeg);
 }
 
+static void sights_come_back_too(void **state)
+{
+	struct little_scenery s;
+	struct buffer object;
+	struct scenery out;
+
+	(void)state;
+	little_scenery_init(&s);
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0, 1, 0 }, 0, 0 };
+	s.nodes[2].sight = (struct scenery_sight){ SCENERY_SIGHT_LEVEL, { 3, 0, 9 }, 8, INFINITY };
+	object = encoded(&s.scenery);
+	CHECK(object.data[4] == 6);
+	CHECK(scenery_decode(&out, buffer_bytes(&object)) == 0);
+	CHECK(memcmp(out.nodes, s.nodes, sizeof(s.nodes)) == 0 && out.texture_count == 0);
+	scenery_finish(&out);
+	for (size_t n = 0; n < object.size; n++)
+		CHECK(scenery_decode(&out, (struct bytes){ object.data, n }) == -EBADMSG);
+	object.data[4] = 5; /* which has none, but always a picture */
+	CHECK(scenery_decode(&out, buffer_bytes(&object)) == -EBADMSG);
+	buffer_finish(&object);
+}
+
+/* Packs the last object again after its last number of bytes became others. */
+static int decode_with(const struct scenery *scenery, size_t from_end, uint32_t value)
+{
+	struct buffer object = encoded(scenery), again;
+	struct reader in;
+	struct scenery out;
+	struct bytes packed;
+	uint8_t *raw, room[4096];
+	size_t size;
+	int rc;
+
+	reader_init(&in, buffer_bytes(&object));
+	(void)reader_bytes(&in, 5);
+	size = reader_u32(&in);
+	packed = reader_bytes(&in, reader_left(&in));
+	raw = malloc(size);
+	CHECK(raw && ZSTD_decompress(raw, size, packed.data, packed.size) == size);
+	for (int k = 0; k < 4; k++)
+		raw[size - from_end + (size_t)k] = (uint8_t)(value >> 8 * k);
+	buffer_init(&again, 1 << 20);
+	buffer_put(&again, object.data, 9);
+	buffer_put(&again, room, ZSTD_compress(room, sizeof(room), raw, size, 1));
+	rc = scenery_decode(&out, buffer_bytes(&again));
+	scenery_finish(&out);
+	free(raw);
+	buffer_finish(&object);
+	buffer_finish(&again);
+	return rc;
+}
+
+/* The last sight: count, and node, kind, a place, from, to. */
+static void faulty_sights_are_not_read(void **state)
+{
+	const uint32_t nan = 0x7fc00000, one = 0x3f800000;
+	struct little_scenery s;
+
+	(void)state;
+	little_scenery_init(&s);
+	s.nodes[2].sight = (struct scenery_sight){ SCENERY_SIGHT_LEVEL, { 3, 0, 9 }, 8, INFINITY };
+	CHECK(decode_with(&s.scenery, 29, 1) == 0);
+	CHECK(decode_with(&s.scenery, 29, 0) == -EBADMSG);          /* version 6 for nothing */
+	CHECK(decode_with(&s.scenery, 29, 2) == -EBADMSG);          /* there is one */
+	CHECK(decode_with(&s.scenery, 29, UINT32_MAX) == -EBADMSG); /* nor so many */
+	CHECK(decode_with(&s.scenery, 25, 3) == -EBADMSG);          /* no such node */
+	CHECK(decode_with(&s.scenery, 20, nan) == -EBADMSG);
+	CHECK(decode_with(&s.scenery, 8, nan) == -EBADMSG);
+	CHECK(decode_with(&s.scenery, 8, one | 0x80000000) == -EBADMSG); /* less than 0 */
+	CHECK(decode_with(&s.scenery, 4, nan) == -EBADMSG);
+	CHECK(decode_with(&s.scenery, 4, one) == -EBADMSG); /* before it begins */
+	for (uint32_t kind = 0; kind < 256; kind++)         /* 3.0f has no low bits */
+		CHECK(decode_with(&s.scenery, 21, kind) == (kind == 2 ? 0 : -EBADMSG));
+}
+
 static void pictures_that_break_a_rule_are_not_written(void **state)
 {
 	uint16_t uvs[4][2] = { { 0 } };
@@ -268,6 +345,18 @@ static void what_breaks_a_rule_is_not_written(void **state)
 	s.nodes[0].place.turn[3] = 0.5f; /* no unit quaternion */
 	CHECK(!is_written(&s));
 	s.nodes[0].place.move_m[0] = NAN;
+	CHECK(!is_written(&s));
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0, 2, 0 }, 0, 0 };
+	CHECK(!is_written(&s));
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0 }, 0, 0 };
+	CHECK(is_written(&s));
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0 }, 0, 1 };
+	CHECK(!is_written(&s));
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_NONE, { 0, 1, 0 }, 0, 0 };
+	CHECK(!is_written(&s));
+	s.nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_LEVEL, { 0 }, 2, 2 };
+	CHECK(!is_written(&s));
+	s.nodes[0].sight.kind = SCENERY_SIGHT_KINDS;
 	CHECK(!is_written(&s));
 	s.meshes[1].node = 3;
 	CHECK(!is_written(&s));
@@ -391,6 +480,8 @@ int main(void)
 		cmocka_unit_test(refuses_every_truncation_and_survives_every_bit),
 		cmocka_unit_test(pictures_come_back_too),
 		cmocka_unit_test(normal_maps_come_back_too),
+		cmocka_unit_test(sights_come_back_too),
+		cmocka_unit_test(faulty_sights_are_not_read),
 		cmocka_unit_test(pictures_that_break_a_rule_are_not_written),
 		cmocka_unit_test(what_breaks_a_rule_is_not_written),
 	};

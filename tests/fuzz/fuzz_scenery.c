@@ -40,11 +40,12 @@ static void pack_and_decode(const uint8_t *data, size_t size)
 	reader_init(&in, (struct bytes){ data + 2, size - 2 });
 	buffer_init(&object, REPACK_BYTES_MAX);
 	buffer_put(&object, "GPsy", 4);
-	buffer_put_u8(&object, data[1] & 1   ? 1
-			       : data[1] & 8 ? 5
-			       : data[1] & 4 ? 4
-			       : data[1] & 2 ? 3
-					     : 2);
+	buffer_put_u8(&object, data[1] & 1    ? 1
+			       : data[1] & 8  ? 5
+			       : data[1] & 4  ? 4
+			       : data[1] & 2  ? 3
+			       : data[1] & 16 ? 6
+					      : 2);
 	buffer_put_u32(&object, (uint32_t)reader_left(&in));
 	repack_put(&object, &in, reader_left(&in));
 	decode(object.data, object.size);

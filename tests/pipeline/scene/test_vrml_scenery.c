@@ -431,6 +431,70 @@ static void an_interpolator_without_sense_is_refused(void **state)
 		     "correct them") == 0);
 }
 
+/* A sign that can be touched, below a Transform that stands still. */
+static void a_billboard_is_a_node_that_faces_the_eye(void **state)
+{
+	static const char sign[] = HEAD
+		"Transform { translation 5 0 0 children [\n"
+		"  Billboard { axisOfRotation 0 0 4 children [ DEF T TouchSensor {}\n"
+		"    Transform { translation 0 1 0 children Shape { geometry Box {} } } ] }\n"
+		"  Billboard { children DEF M Transform { children Shape { geometry Box {} } } }\n"
+		"  Billboard { axisOfRotation 0 0 0 children Shape { geometry Box {} } } ] }\n"
+		"DEF C TimeSensor {}\n"
+		"DEF P PositionInterpolator { key [ 0 1 ] keyValue [ 0 0 0, 0 1 0 ] }\n"
+		"ROUTE T.touchTime TO C.startTime\n"
+		"ROUTE C.fraction_changed TO P.set_fraction\n"
+		"ROUTE P.value_changed TO M.translation\n";
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, sign, &diagnostics, &warnings) == 0 && warnings.count == 0);
+	CHECK(s.node_count == 6 && s.nodes[1].place.move_m[0] == 5);
+	CHECK(s.nodes[1].sight.kind == SCENERY_SIGHT_NONE);
+	CHECK(s.nodes[2].sight.kind == SCENERY_SIGHT_FACES && s.nodes[2].sight.at[2] == 1);
+	CHECK(s.nodes[2].parent == 1 && s.touches[0].node == 2);
+	CHECK(s.nodes[3].sight.at[1] == 1 && s.nodes[4].parent == 3 && s.tracks[0].node == 4);
+	CHECK(s.nodes[5].sight.kind == SCENERY_SIGHT_FACES && s.nodes[5].sight.at[1] == 0);
+	CHECK(s.meshes[0].node == 2 && s.meshes[0].origin_m[1] == 0); /* up by 1 already */
+	scenery_finish(&s);
+}
+
+#define LOD(fields)                                                                                \
+	HEAD "LOD { center 1 2 3 " fields "\n level [ Shape { geometry Box {} }\n"                 \
+	     "Transform { translation 9 0 0 children Shape { geometry Box {} } }\n"                \
+	     "Shape { geometry Sphere {} } ] }"
+
+static void the_levels_of_an_lod_are_nodes_with_distances(void **state)
+{
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(make(&s, LOD("range [ 5, 20, 30, 40 ]"), &diagnostics, &warnings) == 0);
+	CHECK(s.node_count == 4 && s.mesh_count == 3);
+	for (int i = 1; i < 4; i++) {
+		CHECK(s.nodes[i].sight.kind == SCENERY_SIGHT_LEVEL && s.nodes[i].parent == 0);
+		CHECK(s.nodes[i].sight.at[0] == 1 && s.nodes[i].sight.at[2] == 3);
+	}
+	CHECK(s.nodes[1].sight.from == 0 && s.nodes[1].sight.to == 5);
+	CHECK(s.nodes[2].sight.from == 5 && s.nodes[2].sight.to == 20);
+	CHECK(s.nodes[3].sight.from == 20 && isinf(s.nodes[3].sight.to)); /* the last goes on */
+	CHECK(s.meshes[1].node == 2 && s.meshes[1].origin_m[0] == 8);
+	scenery_finish(&s);
+	CHECK(make(&s, LOD("range 5"), &diagnostics, &warnings) == 0);
+	CHECK(s.node_count == 3 && s.mesh_count == 2 && isinf(s.nodes[2].sight.to));
+	scenery_finish(&s);
+	CHECK(make(&s, LOD(""), &diagnostics, &warnings) == 0); /* the first, and no node for it */
+	CHECK(s.node_count == 1 && s.mesh_count == 1 && warnings.count == 0);
+	scenery_finish(&s);
+	CHECK(make(&s, LOD("\nrange [ 5 4 ]"), &diagnostics, &warnings) == -EBADMSG);
+	CHECK(strcmp(diagnostics_cause(&diagnostics, 0),
+		     "a.wrl:2: LOD has distances in range that do not ascend from above 0; "
+		     "correct them") == 0);
+	CHECK(make(&s, LOD("range [ 0 4 ]"), &diagnostics, &warnings) == -EBADMSG);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -447,6 +511,8 @@ int main(void)
 		cmocka_unit_test(a_named_material_has_the_substance_that_the_content_says),
 		cmocka_unit_test(what_is_not_kept_is_named_with_its_line),
 		cmocka_unit_test(an_interpolator_without_sense_is_refused),
+		cmocka_unit_test(a_billboard_is_a_node_that_faces_the_eye),
+		cmocka_unit_test(the_levels_of_an_lod_are_nodes_with_distances),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

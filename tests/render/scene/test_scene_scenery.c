@@ -30,8 +30,9 @@ struct stage {
 };
 
 static struct stage stage;
+static struct camera eye;
 
-static const struct camera eye = {
+static const struct camera first_eye = {
 	.eye_m = { 10, -12, 5 },
 	.target_m = { 0, 0, 1.5f },
 	.up = { 0, 0, 1 },
@@ -89,6 +90,7 @@ static int raise_stage(void **state)
 
 	(void)state;
 	memset(&stage, 0, sizeof(stage));
+	eye = first_eye;
 	CHECK(headless_create(&stage.headless) == 0);
 	CHECK(gl_target_create(&stage.target, WIDTH, HEIGHT) == 0);
 	CHECK(scene_create(&stage.scene, &usual) == 0);
@@ -357,6 +359,54 @@ static void add_pictures(struct scenery *s)
 	}
 }
 
+/* The door is a board that turns about its left edge, as in VRML97: y is up in it, z before it. */
+static void make_billboard(void)
+{
+	const float h = sqrtf(0.5f);
+	struct scene_scenery *own = &stage.scene->scenery;
+	struct scenery_node *nodes = own->content.nodes;
+
+	nodes[0].place.move_m[1] = -8;
+	nodes[0].place.turn[0] = nodes[0].place.turn[3] = h;
+	nodes[0].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0, 1, 0 }, 0, 0 };
+	nodes[1].place.turn[0] = -h;
+	nodes[1].place.turn[3] = h;
+	own->content.materials[0].has_two_sides = false;
+	pose_finish(&own->pose);
+	CHECK(pose_init(&own->pose, &own->content) == 0);
+	draw_again();
+}
+
+/* Its middle is 1.5 m right of its edge, wherever the eye is. */
+static void a_billboard_is_seen_and_touched_from_all_sides(void **state)
+{
+	static const float sides[3][2] = { { 12, -14 }, { -12, -14 }, { -12, 2 } };
+
+	(void)state;
+	settle("before-billboard");
+	make_billboard();
+	for (int i = 0; i < 3; i++) {
+		float right[3] = { -(sides[i][1] + 8), sides[i][0], 0 }, edge[3] = { 0, -8, 1.5f };
+		float at[3], left[3], pixel[2], point[3];
+		char name[32];
+
+		eye.eye_m[0] = sides[i][0];
+		eye.eye_m[1] = sides[i][1];
+		eye.target_m[1] = -7;
+		snprintf(name, sizeof(name), "billboard-%d", i);
+		settle(name);
+		vec_normalise(right);
+		vec_add_scaled(at, edge, 2.9f, right);
+		vec_add_scaled(left, edge, -0.1f, right);
+		CHECK(is_wood(at[0], at[1], at[2]) && !is_wood(left[0], left[1], left[2]));
+		CHECK(!touch(left[0], left[1], left[2]));
+		project(at[0], at[1], at[2], pixel);
+		CHECK(scene_pick(stage.scene, &eye, pixel[0], pixel[1], point));
+		CHECK(vec_distance(point, at) < 0.03f);
+		CHECK(i < 2 || /* it begins to move then */ touch(at[0], at[1], at[2]));
+	}
+}
+
 /* As if it had just come, with a picture on wood that has relief on the door, and a glossy mirror
  * in the second layer. */
 static void come_again(void)
@@ -441,6 +491,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_door_answers_a_finger_and_closes_again,
 						raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_pillar_in_front_hides_the_second_layer,
+						raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_billboard_is_seen_and_touched_from_all_sides,
 						raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_section_cuts_it_too, raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_mirror_shows_scan_and_sky, raise_stage,

@@ -247,6 +247,104 @@ static void what_a_finger_drags_follows_it(void **state)
 	pose_finish(&pose);
 }
 
+static void check_z(const struct pose *pose, float x, float y, float z)
+{
+	const float *m = &pose->nodes[DOOR].matrix[8];
+
+	CHECK(is_near(m[0], x) && is_near(m[1], y) && is_near(m[2], z));
+}
+
+static const float straight_up[3] = { 0, 0, 1 };
+
+/* Its axis is y of a node that is turned as VRML97's files are: z of the model. */
+static void a_billboard_turns_to_the_eye_about_its_axis(void **state)
+{
+	const float h = sqrtf(0.5f);
+	struct little_scenery s;
+	struct pose pose;
+
+	(void)state;
+	little_scenery_init(&s);
+	s.nodes[0].place.turn[0] = s.nodes[0].place.turn[3] = h;
+	s.nodes[0].place.move_m[0] = 7;
+	for (int k = 0; k < 3; k++)
+		s.nodes[0].place.scale[k] = 2;
+	s.nodes[DOOR].sight = (struct scenery_sight){ SCENERY_SIGHT_FACES, { 0, 1, 0 }, 0, 0 };
+	CHECK(scenery_is_sane(&s.scenery) && pose_init(&pose, &s.scenery) == 0);
+	run(&pose, 700);
+	pose_look(&pose, (const float[3]){ 7, -9, 4 }, straight_up);
+	check_z(&pose, 0, -2, 0);
+	pose_look(&pose, (const float[3]){ 17, 10, -4 }, straight_up);
+	check_z(&pose, 2 * h, 2 * h, 0);
+	CHECK(is_near(pose.nodes[DOOR].matrix[6], 2)); /* y stays up */
+	CHECK(!pose_moves(&pose));
+	s.nodes[0].place.move_m[0] = 27; /* it goes by, and the eye rests */
+	pose.places[0].move_m[0] = 27;
+	CHECK(pose_touch(&pose, DOOR) && pose_step(&pose, 1e-3f));
+	check_z(&pose, -2 * h, 2 * h, 0);
+	pose_look(&pose, (const float[3]){ 27, 0, 50 }, straight_up); /* on the axis */
+	for (int k = 0; k < 16; k++)
+		CHECK(isfinite(pose.nodes[DOOR].matrix[k]));
+	pose_finish(&pose);
+}
+
+static void a_billboard_without_axis_is_upright_in_the_picture(void **state)
+{
+	const float h = sqrtf(0.5f), eye_m[3] = { 5, 0, 5 };
+	struct little_scenery s;
+	const float *m;
+	struct pose pose;
+
+	(void)state;
+	little_scenery_init(&s);
+	s.nodes[DOOR].sight.kind = SCENERY_SIGHT_FACES;
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	m = pose.nodes[DOOR].matrix;
+	pose_look(&pose, eye_m, (const float[3]){ -h, 0, h });
+	check_z(&pose, h, 0, h);
+	CHECK(is_near(m[1], 1) && is_near(m[4], -h) && is_near(m[6], h));
+	/* the picture is turned: x of the board is down, y right */
+	pose_look(&pose, eye_m, (const float[3]){ 0, 1, 0 });
+	check_z(&pose, h, 0, h);
+	CHECK(is_near(m[5], 1) && is_near(m[0], h) && is_near(m[2], -h));
+	pose_look(&pose, eye_m, (const float[3]){ 1, 0, 1 }); /* nothing is up */
+	CHECK(isfinite(m[0]) && isfinite(m[5]) && isfinite(m[10]));
+	pose_finish(&pose);
+}
+
+static float width_of(const struct pose *pose, uint32_t node)
+{
+	return pose->nodes[node].high - pose->nodes[node].low;
+}
+
+/* Two levels that meet at 5 of the node's metres, which are 2 of the model's. */
+static void the_distance_chooses_a_level(void **state)
+{
+	struct little_scenery s;
+	struct pose pose;
+
+	(void)state;
+	little_scenery_init(&s);
+	s.scenery.layer_count = s.scenery.title_count = 0;
+	s.nodes[ROOF] = little_node(0, SCENERY_NONE);
+	s.nodes[0].place.scale[0] = s.nodes[0].place.scale[1] = s.nodes[0].place.scale[2] = 2;
+	s.nodes[DOOR].sight = (struct scenery_sight){ SCENERY_SIGHT_LEVEL, { 1, 0, 0 }, 0, 5 };
+	s.nodes[ROOF].sight =
+		(struct scenery_sight){ SCENERY_SIGHT_LEVEL, { 1, 0, 0 }, 5, INFINITY };
+	CHECK(scenery_is_sane(&s.scenery) && pose_init(&pose, &s.scenery) == 0);
+	run(&pose, 700);
+	for (float x = 2; x < 200; x += 0.02f) {
+		const float metres = x / 2 - 1;
+
+		pose_look(&pose, (const float[3]){ x, 0, 0 }, straight_up);
+		CHECK(pose.nodes[DOOR].high == pose.nodes[ROOF].low);
+		CHECK(is_near(width_of(&pose, DOOR) + width_of(&pose, ROOF), 1));
+		CHECK(metres > 4.84f || (width_of(&pose, DOOR) == 1 && width_of(&pose, ROOF) == 0));
+		CHECK(metres < 5.16f || (width_of(&pose, ROOF) == 1 && width_of(&pose, DOOR) == 0));
+	}
+	pose_finish(&pose);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -257,6 +355,9 @@ int main(void)
 		cmocka_unit_test(steps_and_single_keys_have_values),
 		cmocka_unit_test(meshes_bend_and_change_their_colours),
 		cmocka_unit_test(what_a_finger_drags_follows_it),
+		cmocka_unit_test(a_billboard_turns_to_the_eye_about_its_axis),
+		cmocka_unit_test(a_billboard_without_axis_is_upright_in_the_picture),
+		cmocka_unit_test(the_distance_chooses_a_level),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
