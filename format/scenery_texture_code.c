@@ -57,7 +57,8 @@ static int get_texture(struct reader *in, struct scenery_texture *texture)
 	repeats = reader_u8(in);
 	texture->repeats = repeats;
 	texture->jpeg_bytes = reader_u32(in);
-	if (in->failed || repeats > 1 || texture->jpeg_bytes > reader_left(in))
+	if (in->failed || repeats > 1 || texture->jpeg_bytes == 0 ||
+	    texture->jpeg_bytes > reader_left(in))
 		return -EBADMSG;
 	jpeg = reader_bytes(in, texture->jpeg_bytes);
 	texture->jpeg = malloc(jpeg.size + 1);
