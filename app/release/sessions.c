@@ -136,13 +136,16 @@ void sessions_give(struct sessions *sessions, struct hash hash, struct bytes obj
 static void add_wants(struct wants *wants, struct session *session)
 {
 	static struct message_want list[WANTS_MAX];
+	bool awaits_image;
 	uint32_t count;
 
 	if (!session->exhibit.scene)
 		return;
+	awaits_image = scene_awaits_image(session->exhibit.scene);
 	count = information_view_wants(session->exhibit.view, list, WANTS_MAX);
 	for (uint32_t i = 0; i < count; i++)
-		wants_add(wants, &list[i]);
+		if (list[i].priority >= MESSAGE_PRIORITY_INDEX || !awaits_image)
+			wants_add(wants, &list[i]);
 	count = (uint32_t)scene_wants(session->exhibit.scene, list, WANTS_MAX / 2);
 	for (uint32_t i = 0; i < count; i++)
 		wants_add(wants, &list[i]);

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/clock.h"
 #include "base/log.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_labels.h"
@@ -168,6 +169,7 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	tiles_clear(&scene->tiles);
 	depth_clear(&scene->depth, 1);
 	accumulation_break(&scene->accumulation);
+	scene->opened_ms = clock_now_ms();
 	scene->visibility_us = 0;
 	scene->root_hash = root;
 	scene->root_bytes = root_bytes;

@@ -156,6 +156,7 @@ struct scene {
 	bool counting;          /* a part of the pass is drawn */
 	uint32_t counted_drawn; /* that many of its pieces */
 	uint32_t epoch;         /* counts changes of what planning depends on: pages */
+	int64_t opened_ms;      /* time of scene_open */
 	int64_t visibility_us;  /* time of the last visibility pass; 0: none yet */
 	int64_t season_us;      /* when the current season of the tiles began */
 	bool was_moving;

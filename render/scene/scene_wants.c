@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/clock.h"
 #include "geometry/vec.h"
 #include "render/plan/plan_quality.h"
 #include "render/scene/scene_labels.h"
@@ -334,11 +335,13 @@ static void want_images(struct scene *scene)
 /* Where the eye may go is felt, not seen: after what gains the picture two pixels a kilobyte. */
 enum { SOLID_PRIORITY = 328000 };
 
-/* Where no image is here yet, more follows from patches and pages than they gain by themselves. */
-static bool images_come_first(const struct scene *scene)
+/* Where no image comes in this time, none may ever come. */
+enum { AWAIT_MS = 30000 };
+
+bool scene_awaits_image(const struct scene *scene)
 {
-	return scene->options.mode != SCENE_POLYGONS && scene->repository.ready &&
-	       scene->tiles.key_count == 0 && scene->want_count > 0;
+	return scene->options.mode != SCENE_POLYGONS && scene->tiles.key_count == 0 &&
+	       scene->want_count > 0 && clock_now_ms() - scene->opened_ms < AWAIT_MS;
 }
 
 /* What stands beside the scan may fill a sixteenth of the picture; nobody knows before it is here.
@@ -410,7 +413,7 @@ void scene_list_wants(struct scene *scene)
 		want_labels(scene);
 	if (scene->repository.ready && scene->has_hierarchy && images)
 		want_images(scene);
-	if (scene_first_cut_is_here(scene) && !images_come_first(scene))
+	if (scene_first_cut_is_here(scene) && !scene_awaits_image(scene))
 		want_surroundings(scene);
 	if (scene->want_count > 0)
 		qsort(scene->wants, scene->want_count, sizeof(*scene->wants), by_priority);

@@ -22,7 +22,7 @@
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
 
-enum { METADATA_BYTES = 2500, METADATA_TRIPS = 6, LOOK_MS = 100, TURN_BYTES_MIN = 16 << 10 };
+enum { METADATA_BYTES = 2500, METADATA_TRIPS = 6, LOOK_MS = 100, TURN_BYTES_MIN = 8 << 10 };
 
 struct bench {
 	const char *views, *truth, *film;
