@@ -1,8 +1,9 @@
 /* What meshes of the marching-cube octree cost and how far they lie from the finest surface:
- * bench_octree CELL FILE, the side of a leaf cube in metres and an alignment of range images, or a
- * range image. For each budget the time to make the mesh and its distance, beside meshoptimizer's
- * quadric simplification to as many triangles; and whether 1000 random budgets are watertight. JSON
- * to standard output; lengths in millimetres, if the scans are in metres. */
+ * bench_octree CELL FILE [UNIT], the side of a leaf cube in metres and an alignment of range
+ * images, a range image or a mesh, and the metres of its unit (1). For each budget the time to make
+ * the mesh and its distance, beside meshoptimizer's quadric simplification to as many triangles;
+ * and whether 1000 random budgets are watertight. JSON to standard output; lengths in millimetres.
+ */
 #include <errno.h>
 #include <meshoptimizer.h>
 
@@ -15,20 +16,24 @@
 enum { RANDOM_BUDGETS = 1000, REPEATS = 5 };
 
 static void load(struct mesh *mesh, struct budget_leaves *leaves, struct reconstruct_report *report,
-		 double cell, const char *path)
+		 double cell, const char *path, double unit)
 {
+	const double numbers[16] = { [0] = unit, [5] = unit, [10] = unit, [15] = 1 };
 	const struct reconstruct_options options = {
 		.cell = cell, .is_closed = true, .leaf = budget_leaf_add, .data = leaves
 	};
 	static struct reconstruct_scan scans[ALIGNMENT_SCANS_MAX];
 	struct diagnostics diagnostics = { 0 };
 	struct alignment alignment = { 0 };
+	struct transform whole;
 	int rc = 0;
 
+	if (transform_set(&whole, numbers))
+		need_ok(-EINVAL, "UNIT");
 	if (alignment_is_named(path))
 		rc = alignment_read(&alignment, path, &diagnostics);
 	else
-		scans[0].path = path;
+		scans[0] = (struct reconstruct_scan){ path, &whole };
 	for (uint32_t i = 0; i < alignment.count; i++)
 		scans[i] = (struct reconstruct_scan){ alignment.scans[i].path,
 						      &alignment.scans[i].transform };
@@ -149,9 +154,10 @@ int main(int argc, char **argv)
 	struct mesh finest;
 	int64_t began_us;
 
-	if (argc != 3)
+	if (argc < 3)
 		return EXIT_FAILURE;
-	load(&finest, &leaves, &report, strtod(argv[1], NULL), argv[2]);
+	load(&finest, &leaves, &report, strtod(argv[1], NULL), argv[2],
+	     argc > 3 ? strtod(argv[3], NULL) : 1);
 	began_us = clock_now_us();
 	need_ok(budget_model_create(&model, &leaves, &finest, &report), "octree");
 	printf("{\"triangles\": %u, \"nodes\": %u, \"levels\": %u, \"octree_s\": %.2f,\n",
