@@ -5,6 +5,7 @@
 #define GOPURA_GEOMETRY_VEC_H
 
 #include <math.h>
+#include <stdbool.h>
 
 /* Minimum and maximum of two numbers. fminf and fmaxf become library calls because they must handle
  * NaN; nothing here is NaN. */
@@ -127,9 +128,9 @@ static inline void matrix_direction(float out[3], const float m[16], const float
 		out[row] = m[row] * along[0] + m[4 + row] * along[1] + m[8 + row] * along[2];
 }
 
-/* Sets out to the inverse of a matrix whose last row is 0 0 0 1. Returns 0 where it has none; out
- * is then not set. */
-static inline int matrix_invert(float out[16], const float m[16])
+/* Sets out to the inverse of a matrix whose last row is 0 0 0 1. Returns false where it has none;
+ * out is then not set. */
+static inline bool matrix_invert(float out[16], const float m[16])
 {
 	float rows[3][3], det;
 
@@ -138,7 +139,7 @@ static inline int matrix_invert(float out[16], const float m[16])
 	vec_cross(rows[2], &m[0], &m[4]);
 	det = vec_dot(&m[0], rows[0]);
 	if (!(fabsf(det) > 1e-18f))
-		return 0;
+		return false;
 	for (int row = 0; row < 3; row++) {
 		for (int k = 0; k < 3; k++)
 			out[4 * k + row] = rows[row][k] / det;
@@ -146,7 +147,7 @@ static inline int matrix_invert(float out[16], const float m[16])
 		out[4 * row + 3] = 0;
 	}
 	out[15] = 1;
-	return 1;
+	return true;
 }
 
 #endif
