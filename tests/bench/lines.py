@@ -34,6 +34,8 @@ def play(kbit, rtt_ms, loss, swing_s, wait_ms):
                 sys.exit(f"the kiosk failed: {at}/log")
         except subprocess.TimeoutExpired:  # on a slow line there is always a byte more to come
             os.killpg(kiosk.pid, signal.SIGKILL)
+            kiosk.wait()
+            os.remove(max((f"{at}/film/{name}" for name in os.listdir(f"{at}/film")), key=os.path.getmtime))  # half written
     return at, began
 
 
