@@ -43,6 +43,8 @@ def judge(at):
     """Pictures in the order of time, with their decibels."""
     names = sorted(os.listdir(f"{at}/film"), key=lambda name: os.path.getmtime(f"{at}/film/{name}"))
     names = [name for name in names if name.endswith(".png")]
+    if not names:
+        sys.exit(f"there is no picture: {at}/log says why")
     for folder in ("one", "other"):
         os.mkdir(f"{at}/{folder}")
     for i, name in enumerate(names):

@@ -22,5 +22,5 @@ GOPURA_LISTEN=0.0.0.0 start_server "$release" "$work/server" 0 10.77.0.1
 port=${server_url##*:}
 # shellcheck disable=SC2086
 python3 tests/bench/lines.py "$work" "$release" "${port%/}" ${LINES:-32:100 64:100 1000:40 1000:300 10000:40 100000:20 \
-	1000:40:2 10000:40:2 2000:40:0:5 1000:600:10 64:100:0:0:30000 64:100:0:0:20 1000:40:0:0:30000 1000:40:0:0:20} >build/bench/lines.json.new
+	1000:40:2 10000:40:2 2000:40:0:5 1000:600:10 64:100:0:0:30000 64:100:0:0:50 1000:40:0:0:30000 1000:40:0:0:50} >build/bench/lines.json.new
 mv build/bench/lines.json.new build/bench/lines.json
