@@ -351,7 +351,7 @@ static struct message_want child_want(const struct information_view *view, uint3
 }
 
 /* A visitor looks first: the database comes when nothing improves the picture by 5 pixels a
- * kilobyte any more, which is after 30 dB. */
+ * kilobyte any more, which is at about 30 dB. */
 static struct message_want database_want(const struct information_view *view)
 {
 	struct message_want want = child_want(view, 0);
