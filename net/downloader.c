@@ -30,8 +30,7 @@ enum {
 	TURN_BYTES_MIN = 8 << 10,
 	RANGES_A_TURN = 4,
 	RANGE_BYTES_MAX = 1 << 20,
-	/* An object of more than so many ranges is requested in segments, each as large as a range.
-	 */
+	/* An object larger than so many ranges is requested in segments of a range each. */
 	RANGES_AN_OBJECT = 2,
 	LATER_BYTES_MIN = 64 << 10, /* a range for later, however low its rate */
 	/* of the waiting time, what the most urgent object may wait for others of its range */
