@@ -12,8 +12,7 @@
 #include "format/scenery_texture_code.h"
 #include "pipeline/scene/gltf_scenery.h"
 #include "pipeline/scene/scenery_texture.h"
-#include "pipeline/scene/vrml_scenery.h"
-#include "tests/check.h"
+#include "tests/pipeline/scene/little_vrml.h"
 
 enum { SIDE = 64 };
 
@@ -249,16 +248,8 @@ static void make_vrml(struct scenery *out, const char *text, struct diagnostics 
 	struct buffer png = make_png();
 	const struct vrml_options options = { .open_file = open_picture, .data = &png };
 	struct diagnostics diagnostics = { 0 };
-	struct scenery_maker maker = { 0 };
-	struct vrml *scene;
-	uint32_t node;
 
-	CHECK(scenery_add_node(&maker, &root, &node) == 0);
-	CHECK(vrml_read(&scene, (struct bytes){ (const uint8_t *)text, strlen(text) }, "a.wrl",
-			&options, &diagnostics, warnings) == 0);
-	CHECK(vrml_scenery_add(&maker, scene, node, &options, &diagnostics, warnings) == 0);
-	CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
-	vrml_destroy(scene);
+	CHECK(little_vrml_make(out, text, &options, NULL, 0, &diagnostics, warnings) == 0);
 	buffer_finish(&png);
 }
 

@@ -7,7 +7,7 @@
 
 #include "format/normal.h"
 #include "format/scenery_code.h"
-#include "tests/check.h"
+#include "tests/pipeline/scene/little_vrml.h"
 
 #define HEAD "#VRML V2.0 utf8\n"
 
@@ -28,25 +28,9 @@ static int make_with(struct scenery *out, const char *text, struct scenery_look 
 		     uint32_t look_count, struct diagnostics *diagnostics,
 		     struct diagnostics *warnings)
 {
-	const struct scenery_node root = { .parent = SCENERY_NONE,
-					   .layer = SCENERY_NONE,
-					   .place = scenery_at_rest };
-	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
 	const struct vrml_options options = { 0 };
-	struct scenery_maker maker = { .looks = looks, .look_count = look_count };
-	struct vrml *scene = NULL;
-	uint32_t node = 0;
-	int rc = vrml_read(&scene, bytes, "a.wrl", &options, diagnostics, warnings);
 
-	*out = (struct scenery){ 0 };
-	CHECK(scenery_add_node(&maker, &root, &node) == 0);
-	if (rc == 0)
-		rc = vrml_scenery_add(&maker, scene, node, &options, diagnostics, warnings);
-	if (rc == 0)
-		CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
-	scenery_maker_finish(&maker);
-	vrml_destroy(scene);
-	return rc;
+	return little_vrml_make(out, text, &options, looks, look_count, diagnostics, warnings);
 }
 
 static int make(struct scenery *out, const char *text, struct diagnostics *diagnostics,

@@ -4,8 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "pipeline/scene/vrml_scenery.h"
-#include "tests/check.h"
+#include "tests/pipeline/scene/little_vrml.h"
 
 #define HEAD "#VRML V2.0 utf8\n"
 
@@ -99,25 +98,9 @@ static const struct example {
 static int make(struct scenery *out, const char *text, struct diagnostics *diagnostics,
 		struct diagnostics *warnings)
 {
-	const struct scenery_node root = { .parent = SCENERY_NONE,
-					   .layer = SCENERY_NONE,
-					   .place = scenery_at_rest };
-	const struct bytes bytes = { (const uint8_t *)text, strlen(text) };
 	const struct vrml_options options = { 0 };
-	struct scenery_maker maker = { 0 };
-	struct vrml *scene = NULL;
-	uint32_t node = 0;
-	int rc = vrml_read(&scene, bytes, "d.wrl", &options, diagnostics, warnings);
 
-	*out = (struct scenery){ 0 };
-	CHECK(scenery_add_node(&maker, &root, &node) == 0);
-	if (rc == 0)
-		rc = vrml_scenery_add(&maker, scene, node, &options, diagnostics, warnings);
-	if (rc == 0)
-		CHECK(scenery_maker_end(&maker, out) == 0 && scenery_is_sane(out));
-	scenery_maker_finish(&maker);
-	vrml_destroy(scene);
-	return rc;
+	return little_vrml_make(out, text, &options, NULL, 0, diagnostics, warnings);
 }
 
 static void the_examples_become_scenery(void **state)
@@ -153,7 +136,7 @@ static void a_program_is_refused_with_its_line(void **state)
 	(void)state;
 	CHECK(make(&s, lamp, &diagnostics, &warnings) < 0);
 	print_message("%s\n", diagnostics.first.text);
-	CHECK(strncmp(diagnostics.first.text, "d.wrl:3: ", 9) == 0 &&
+	CHECK(strncmp(diagnostics.first.text, "a.wrl:3: ", 9) == 0 &&
 	      strstr(diagnostics.first.text, "Script"));
 }
 
