@@ -73,13 +73,11 @@ void appearance_solid_init(struct appearance_solid *out, const struct scenery_ma
 			   const float m[16])
 {
 	static const float nowhere[3], far_m = 1e6f;
-	float axes[3][3], cofactors[3][3], aside[3] = { 0 }, mean[3], det, scale;
+	float axes[3][3], cofactors[9], aside[3] = { 0 }, mean[3], det, scale;
 	int least = 0;
 
-	vec_cross(cofactors[0], &m[4], &m[8]);
-	vec_cross(cofactors[1], &m[8], &m[0]);
-	vec_cross(cofactors[2], &m[0], &m[4]);
-	det = vec_dot(&m[0], cofactors[0]);
+	matrix_cofactors(cofactors, m);
+	det = vec_dot(&m[0], &cofactors[0]);
 	scale = cbrtf(fabsf(det));
 	for (int k = 1; k < 3; k++)
 		if (fabsf(material->grain[k]) < fabsf(material->grain[least]))
@@ -95,7 +93,7 @@ void appearance_solid_init(struct appearance_solid *out, const struct scenery_ma
 
 			out->place[3 * column + row] = scale * axes[row][column];
 			for (int k = 0; k < 3; k++)
-				sum += cofactors[k][row] * scale * axes[column][k];
+				sum += cofactors[3 * k + row] * scale * axes[column][k];
 			out->slope[3 * column + row] = fabsf(det) > 1e-12f ? sum / det : 0;
 		}
 	for (int k = 0; k < 3; k++)

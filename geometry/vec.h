@@ -128,22 +128,29 @@ static inline void matrix_direction(float out[3], const float m[16], const float
 		out[row] = m[row] * along[0] + m[4 + row] * along[1] + m[8 + row] * along[2];
 }
 
+/* Sets out to the cofactors of the upper 3 x 3 part, column by column: normals go by them, whatever
+ * the scale. Its determinant is that of the first columns of both: vec_dot(&m[0], &out[0]). */
+static inline void matrix_cofactors(float out[9], const float m[16])
+{
+	vec_cross(&out[0], &m[4], &m[8]);
+	vec_cross(&out[3], &m[8], &m[0]);
+	vec_cross(&out[6], &m[0], &m[4]);
+}
+
 /* Sets out to the inverse of a matrix whose last row is 0 0 0 1. Returns false where it has none;
  * out is then not set. */
 static inline bool matrix_invert(float out[16], const float m[16])
 {
-	float rows[3][3], det;
+	float rows[9], det;
 
-	vec_cross(rows[0], &m[4], &m[8]);
-	vec_cross(rows[1], &m[8], &m[0]);
-	vec_cross(rows[2], &m[0], &m[4]);
-	det = vec_dot(&m[0], rows[0]);
+	matrix_cofactors(rows, m);
+	det = vec_dot(&m[0], &rows[0]);
 	if (!(fabsf(det) > 1e-18f))
 		return false;
 	for (int row = 0; row < 3; row++) {
 		for (int k = 0; k < 3; k++)
-			out[4 * k + row] = rows[row][k] / det;
-		out[12 + row] = -vec_dot(rows[row], &m[12]) / det;
+			out[4 * k + row] = rows[3 * row + k] / det;
+		out[12 + row] = -vec_dot(&rows[3 * row], &m[12]) / det;
 		out[4 * row + 3] = 0;
 	}
 	out[15] = 1;

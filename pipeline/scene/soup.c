@@ -12,31 +12,21 @@
 /* Past these many tests of a point in an ear, for the whole soup, polygons become fans. */
 #define POLYGON_STEPS_MAX (1ull << 28)
 
-static void place(float out[3], const float m[16], const float p[3])
-{
-	for (int k = 0; k < 3; k++)
-		out[k] = m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2] + m[12 + k];
-}
-
-/* A normal goes by the cofactors; a place that mirrors turns these round. */
+/* A matrix that mirrors turns the cofactors round. */
 static void place_normal(float normal[3], const float m[16])
 {
-	float columns[3][3], out[3];
-	const float given[3] = { normal[0], normal[1], normal[2] };
+	float by[9], out[3];
 
-	vec_cross(columns[0], &m[4], &m[8]);
-	vec_cross(columns[1], &m[8], &m[0]);
-	vec_cross(columns[2], &m[0], &m[4]);
+	matrix_cofactors(by, m);
 	for (int row = 0; row < 3; row++)
-		out[row] = columns[0][row] * given[0] + columns[1][row] * given[1] +
-			   columns[2][row] * given[2];
-	vec_scale(normal, vec_dot(&m[0], columns[0]) < 0 ? -1 : 1, out);
+		out[row] = by[row] * normal[0] + by[3 + row] * normal[1] + by[6 + row] * normal[2];
+	vec_scale(normal, vec_dot(&m[0], &by[0]) < 0 ? -1 : 1, out);
 	vec_normalise(normal);
 }
 
 void soup_place(float out[3], const struct soup *soup, const float at[3])
 {
-	place(out, soup->place, at);
+	matrix_place(out, soup->place, at);
 }
 
 /* Adds the triangle of three corners, by their numbers. */
@@ -58,7 +48,7 @@ static int add_triangle(struct soup *soup, const struct soup_corner *of, uint32_
 	triangle = &soup->triangles[soup->count++];
 	for (int i = 0; i < 3; i++) {
 		triangle->corners[i] = of[corners[i]];
-		place(triangle->corners[i].position, soup->place, of[corners[i]].position);
+		matrix_place(triangle->corners[i].position, soup->place, of[corners[i]].position);
 		place_normal(triangle->corners[i].normal, soup->place);
 	}
 	triangle->texture = soup->texture;

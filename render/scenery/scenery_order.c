@@ -25,9 +25,7 @@ int scenery_order_add(struct scenery_order *order, const struct pose *pose, uint
 				middle[k] += vertices[of->triangles[t][corner]].place[k] / 3.0f;
 		for (int k = 0; k < 3; k++)
 			middle[k] = of->origin_m[k] + of->step_m * middle[k];
-		for (int row = 0; row < 3; row++)
-			at[row] = m[row] * middle[0] + m[4 + row] * middle[1] +
-				  m[8 + row] * middle[2] + m[12 + row];
+		matrix_place(at, m, middle);
 		order->triangles[order->count++] = (struct scenery_ordered){
 			.distance_m = vec_distance(at, eye_m), .mesh = mesh, .triangle = t
 		};

@@ -200,10 +200,7 @@ static void set_mesh(const struct scenery_program *p, const struct scenery_mesh 
 	float model[16], turned[9];
 
 	lattice_matrix(model, mesh, m, frame->view->eye_m);
-	/* Normals go by the cofactors, whatever the scale. */
-	vec_cross(&turned[0], &m[4], &m[8]);
-	vec_cross(&turned[3], &m[8], &m[0]);
-	vec_cross(&turned[6], &m[0], &m[4]);
+	matrix_cofactors(turned, m);
 	glUniformMatrix4fv(p->model, 1, GL_FALSE, model);
 	glUniform3fv(p->normal, 3, turned);
 	glUniform1f(p->sides, has_two_sides);
@@ -501,10 +498,8 @@ static bool ray_mesh(const struct scenery_mesh *mesh, const struct scenery_verte
 		for (int k = 0; k < 3; k++) {
 			const uint16_t *place = vertices[mesh->triangles[t][k]].place;
 
-			for (int row = 0; row < 3; row++)
-				corners[k][row] = model[row] * place[0] +
-						  model[4 + row] * place[1] +
-						  model[8 + row] * place[2] + model[12 + row];
+			matrix_place(corners[k], model,
+				     (const float[3]){ place[0], place[1], place[2] });
 		}
 		found |= hits((const float(*)[3])corners, direction, least_m, distance_m);
 	}
