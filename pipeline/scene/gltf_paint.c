@@ -52,8 +52,8 @@ int gltf_paint_get(struct gltf_paint *out, const struct gltf *gltf, const cJSON 
 	out->normals = gltf_item(gltf, GLTF_TEXTURES, normals, "index", NULL);
 	if (!get_lay(&out->lay, picture) || !get_lay(&other, normals) || !isfinite(out->depth))
 		return gltf_say(gltf, -EBADMSG, material,
-				"material \"%.60s\" has a picture whose place is none; export it "
-				"anew",
+				"material \"%.60s\" has an offset, rotation or scale of a "
+				"picture that is no number; export it anew",
 				gltf_name(material));
 	if (!out->picture)
 		out->lay = other;

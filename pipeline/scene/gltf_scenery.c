@@ -197,11 +197,10 @@ static bool set_corner(struct soup_corner *out, const struct shape *shape, uint3
 	    (shape->has_colours && vertex >= shape->colours.count) ||
 	    (shape->has_uvs && vertex >= shape->uvs.count))
 		return false;
-	/* Morph targets turn them. */
-	for (uint32_t k = 0; k < 3 && shape->has_normals && shape->morph.count == 0 &&
-			     vertex < shape->normals.count;
-	     k++)
-		out->normal[k] = gltf_number(&shape->normals, vertex, k);
+	/* Those of what bends are computed for each shape. */
+	if (shape->has_normals && shape->morph.count == 0 && vertex < shape->normals.count)
+		for (uint32_t k = 0; k < 3; k++)
+			out->normal[k] = gltf_number(&shape->normals, vertex, k);
 	if (shape->has_uvs) {
 		out->uv[0] = gltf_number(&shape->uvs, vertex, 0);
 		out->uv[1] = gltf_number(&shape->uvs, vertex, 1);
