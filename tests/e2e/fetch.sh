@@ -56,7 +56,8 @@ clear_log() { : >"$log"; }
 line=$(walk one.db) || fail "not all came: $line"
 is came "$line" -eq 2051
 is received "$line" -lt $((16105624 * 103 / 100))
-[ "$(packs_asked)" -lt 100 ] || fail "$(packs_asked) requests for 2051 objects"
+# Ranges have 128 KiB until the line was measured, which a fast one is only when all has come: 123.
+[ "$(packs_asked)" -lt 200 ] || fail "$(packs_asked) requests for 2051 objects"
 grep -q 'HTTP/2.0" 206' "$log" || fail "no ranges over HTTP/2"
 echo "2051 objects: $(packs_asked) requests, $(figure received "$line") bytes, $(figure ms "$line") ms"
 
