@@ -1,6 +1,6 @@
-"""appliance.py IMAGE WORK [STICKS]: boots the appliance's image, waits for the temple, taps it, expects a card, and checks the journal.
+"""appliance.py IMAGE WORK [STICKS [CASE...]]: boots the appliance's image, waits for the temple, taps it, expects a card, and checks the journal.
 STICKS is a folder of update bundles by name (docs/image.md); each is plugged in as a stick. Without it, what was written to the disk is noted in
-WORK/writes, a session for powercut.py. With ARCH=arm64 in the environment the image is of
+WORK/writes, a session for powercut.py. Of the CASES below only those named are run, or all. With ARCH=arm64 in the environment the image is of
 that architecture."""
 import json
 import os
@@ -160,7 +160,8 @@ def usb(machine):
     print("by USB a touchscreen is taken up, a keyboard and a network are not")
 
 
-def visit(machine, began):
+def visit(machine):
+    began = time.monotonic()
     while time.monotonic() - began < LOADER_S:
         machine.qmp.press(*"ce")  # GRUB's keys for its shell and its editor
     machine.said("app: first picture", BOOT_S)
@@ -203,31 +204,47 @@ def well(machine):
     print("the health page says: " + verdict.replace("\n", "; "))
 
 
-def updates(machine, sticks):
-    stick = lambda name: os.path.join(sticks, name + ".img")
-    there = [name[:-4] for name in os.listdir(sticks)]
-    # On a busy machine it was said while the devices were tried.
-    machine.wait_for("good slot A", BOOT_S, lambda: re.search("slot A, .* is good", machine.log()))
-    machine.plug(stick("tampered"))
+def good(machine):
+    """Waits until the system that runs was found good, which on a busy machine may have been long ago; returns its slot."""
+
+    def slot():
+        starts = list(re.finditer(r"starting slot (\w)", machine.log()))
+        name = starts[-1].group(1).upper() if starts else None
+        return name if name and re.search(f"slot {name}, .* is good", machine.log()[starts[-1].end() :]) else None
+
+    return machine.wait_for("good slot", BOOT_S, slot)
+
+
+def tampered(machine, stick):
+    good(machine)
+    machine.plug(stick)
     print(machine.said("tampered.raucb: could not be installed", INSTALL_S))
     machine.unplug()
 
-    machine.plug(stick("next"))
+
+def newer(machine, stick):
+    good(machine)
+    machine.plug(stick)
     machine.installed("next")
     print(machine.said("slot B, .*next, is good", BOOT_S))
     machine.temple("next")
     machine.unplug()
 
-    machine.plug(stick("older"))
+
+def older(machine, stick):
+    machine.plug(stick)
     print(machine.said(r"older.raucb is refused: before \(sequence \d+\) is older than [^ ]*next \(sequence \d+\)", ANSWER_S))
     machine.unplug()
 
-    for name in sorted({"blank", "hangs"} & set(there)):
-        machine.plug(stick(name))
-        machine.installed(name)
-        print(machine.said("slot B, .*next, is good", BACK_S), f"again, after {name}")
-        machine.temple(name + "-back")
-        machine.unplug()
+
+def faulty(machine, stick, name):
+    """What runs is good again after an update that shows nothing or hangs."""
+    slot = good(machine)
+    machine.plug(stick)
+    machine.installed(name)
+    print(machine.said(f"slot {slot}, .*, is good", BACK_S), f"again, after {name}")
+    machine.temple(name + "-back")
+    machine.unplug()
 
 
 def changed(machine):
@@ -248,8 +265,32 @@ def changed(machine):
         machine.stop()
 
 
+# What is tested, in this order, with the stick of the same name if there is one. older and changed need a good slot B.
+CASES = {
+    "visit": lambda machine, stick: visit(machine),
+    "tampered": tampered,
+    "next": newer,
+    "older": older,
+    "blank": lambda machine, stick: faulty(machine, stick, "blank"),
+    "hangs": lambda machine, stick: faulty(machine, stick, "hangs"),
+    "changed": lambda machine, stick: changed(machine),
+}
+
+
+def cases(sticks, chosen):
+    """Names of the cases to run: those chosen, or all that have what they need."""
+    unknown = set(chosen) - set(CASES)
+    if unknown:
+        raise SystemExit(f"appliance.py: no case {', '.join(sorted(unknown))}; there are {', '.join(CASES)}")
+    if not sticks:
+        return ["visit"]
+    there = {name.removesuffix(".img") for name in os.listdir(sticks)} | {"visit", "changed"}
+    return chosen or [name for name in CASES if name in there]
+
+
 def main():
     image, work = sys.argv[1:3]
+    sys.stdout.reconfigure(line_buffering=True)  # a log shows each part when it is done
     began = time.monotonic()
     disk = os.path.join(work, "disk.img")
     subprocess.run(["cp", "--sparse=always", image, disk], check=True)
@@ -262,10 +303,10 @@ def main():
         subprocess.run(["cp", "--sparse=always", disk, os.path.join(writes, "base.img")], check=True)
     machine = Appliance(disk, work, "appliance", None if sticks else os.path.join(writes, "writes.log"))
     try:
-        visit(machine, began)
-        if sticks:
-            updates(machine, sticks)
-            changed(machine)
+        for name in cases(sticks, sys.argv[4:]):
+            since = time.monotonic()
+            CASES[name](machine, os.path.join(sticks or "", name + ".img"))
+            print(f"{name}: {time.monotonic() - since:.0f} s")
     finally:
         machine.stop()
     print(f"done in {time.monotonic() - began:.0f} s")

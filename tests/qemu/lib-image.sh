@@ -16,7 +16,7 @@ mkdir -p "$out"
 conf=$(dirname "$out")
 cp build/qemu/release/root/1.json "$conf/root.json"
 printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
-# A box's 90 s for a start are too few where another architecture is emulated.
+# A box's 90 s for a start, and 30 s for a frame, are too few where another architecture is emulated.
 units=
 if [ "$ARCH" != amd64 ]; then
 	units=$conf/units
@@ -24,5 +24,6 @@ if [ "$ARCH" != amd64 ]; then
 		mkdir -p "$units/gopura-$unit.service.d"
 		printf '[Service]\nTimeoutStartSec=900\n' >"$units/gopura-$unit.service.d/emulated.conf"
 	done
+	echo WatchdogSec=300 >>"$units/gopura-kiosk.service.d/emulated.conf"
 fi
 UNITS=$units CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
