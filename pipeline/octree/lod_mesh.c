@@ -59,7 +59,7 @@ static int add_triangle(struct lod_mesh *mesh, uint32_t a, uint32_t b, uint32_t 
 
 /* ---- polygons */
 
-/* Cuts a polygon from the point in its middle: two triangles more than without it. */
+/* Cuts a polygon from the point in its middle. */
 static int add_star(struct making *making, const uint32_t *corners, uint32_t n)
 {
 	struct lod_vertex middle = { { 0 }, { 0 } };
@@ -82,8 +82,6 @@ static int add_star(struct making *making, const uint32_t *corners, uint32_t n)
 	rc = add_vertex(making->mesh, &middle, &centre);
 	for (uint32_t i = 0; i < n && rc == 0; i++)
 		rc = add_triangle(making->mesh, corners[i], corners[(i + 1) % n], centre);
-	making->spare -= 2;
-	making->mesh->stars++;
 	return rc;
 }
 
@@ -98,9 +96,14 @@ static int add_polygon(struct making *making, const struct lod_polygons *polygon
 		rc = number_of(making, polygons->corners[begin + k], &numbers[k]);
 	if (rc < 0)
 		return rc;
-	if (making->spare >= 2)
-		return add_star(making, numbers, n);
 	count = lod_polygon_cut(triangles, polygons, i);
+	if (count == 0)
+		return add_star(making, numbers, n);
+	if (making->spare >= 2) { /* it has two triangles more as a star */
+		making->spare -= 2;
+		making->mesh->stars++;
+		return add_star(making, numbers, n);
+	}
 	for (uint32_t t = 0; t < count && rc == 0; t++)
 		rc = add_triangle(making->mesh, numbers[triangles[t][0] - begin],
 				  numbers[triangles[t][1] - begin],

@@ -3,7 +3,12 @@
 
 #include <string.h>
 
-enum { RING_MAX = 8 /* corners and middles around a face */, COST_MAX = 255, CUT_MAX = 24 };
+enum {
+	RING_MAX = 8, /* corners and middles around a face */
+	CUT_MAX = 24,
+	COST_REFUSED = CUT_MAX, /* more than all diagonals that cost 1 */
+	UPPER_FACES = 0x2a,     /* a bit for each face of a node on side 1 of its axis */
+};
 
 struct segment {
 	uint32_t from, to; /* vertices */
@@ -153,16 +158,67 @@ void lod_polygons_find(struct lod_polygons *out, const struct lod_tree *tree,
 			follow(out, &joining, &used, i);
 }
 
-uint32_t lod_polygons_triangles(const struct lod_polygons *polygons)
-{
-	return polygons->count > 0 ? polygons->ends[polygons->count - 1] - 2 * polygons->count : 0;
-}
-
 /* ---- triangles */
 
+/* The best ways to cut the part of a polygon between two of its corners: what its diagonals cost,
+ * and the third corner of the triangle at the line between the two. */
 struct division {
-	uint8_t cost[CUT_MAX][CUT_MAX], middle[CUT_MAX][CUT_MAX];
+	uint16_t cost[CUT_MAX][CUT_MAX];
+	uint8_t middle[CUT_MAX][CUT_MAX];
 };
+
+/* A diagonal in a face of the node may also be one of the node behind that face, and the edge would
+ * have four triangles. So only the node above a face (along its axis) may use it, if it has no
+ * better one. Up to four nodes have the corners on a common edge, so no diagonal lies along one. */
+static uint32_t diagonal_cost(uint8_t faces_a, uint8_t faces_b)
+{
+	const uint8_t common = faces_a & faces_b;
+
+	if ((common & UPPER_FACES) || (common & (common - 1)))
+		return COST_REFUSED;
+	return common != 0;
+}
+
+/* Divides a polygon of n <= CUT_MAX corners (dynamic programming over its parts). Returns false if
+ * it needs a diagonal that is refused. */
+static bool divide(struct division *division, const uint8_t *faces, uint32_t n)
+{
+	for (uint32_t k = 0; k + 1 < n; k++)
+		division->cost[k][k + 1] = 0;
+	for (uint32_t length = 2; length < n; length++)
+		for (uint32_t a = 0; a + length < n; a++) {
+			const uint32_t b = a + length;
+			uint32_t least = UINT16_MAX;
+
+			for (uint32_t m = a + 1; m < b; m++) {
+				const uint32_t cost = division->cost[a][m] + division->cost[m][b];
+
+				if (cost < least) {
+					least = cost;
+					division->middle[a][b] = (uint8_t)m;
+				}
+			}
+			if (length < n - 1)
+				least += diagonal_cost(faces[a], faces[b]);
+			division->cost[a][b] = (uint16_t)least;
+		}
+	return division->cost[0][n - 1] < COST_REFUSED;
+}
+
+uint32_t lod_polygons_triangles(const struct lod_polygons *polygons)
+{
+	uint32_t count = 0, begin = 0;
+
+	for (uint32_t i = 0; i < polygons->count; begin = polygons->ends[i++]) {
+		const uint32_t n = polygons->ends[i] - begin;
+		struct division division;
+		const bool is_cut =
+			n == 3 || (n <= CUT_MAX && divide(&division, polygons->faces + begin, n));
+
+		count += is_cut ? n - 2 : n;
+	}
+	return count;
+}
 
 static uint32_t cut_part(uint8_t (*triangles)[3], uint32_t count, const struct division *division,
 			 uint32_t begin, uint32_t i, uint32_t k)
@@ -182,34 +238,9 @@ static uint32_t cut_part(uint8_t (*triangles)[3], uint32_t count, const struct d
 uint32_t lod_polygon_cut(uint8_t (*triangles)[3], const struct lod_polygons *polygons, uint32_t i)
 {
 	const uint32_t begin = i > 0 ? polygons->ends[i - 1] : 0, n = polygons->ends[i] - begin;
-	const uint8_t *faces = polygons->faces + begin;
 	struct division division;
 
-	if (n > CUT_MAX) { /* a fan: such polygons do not occur in practice */
-		for (uint32_t k = 2; k < n; k++) {
-			triangles[k - 2][0] = (uint8_t)begin;
-			triangles[k - 2][1] = (uint8_t)(begin + k - 1);
-			triangles[k - 2][2] = (uint8_t)(begin + k);
-		}
-		return n - 2;
-	}
-	for (uint32_t k = 0; k + 1 < n; k++)
-		division.cost[k][k + 1] = 0;
-	for (uint32_t length = 2; length < n; length++)
-		for (uint32_t a = 0; a + length < n; a++) {
-			const uint32_t b = a + length;
-			uint32_t least = COST_MAX;
-
-			for (uint32_t m = a + 1; m < b; m++) {
-				const uint32_t cost = division.cost[a][m] + division.cost[m][b];
-
-				if (cost < least) {
-					least = cost;
-					division.middle[a][b] = (uint8_t)m;
-				}
-			}
-			least += length < n - 1 && (faces[a] & faces[b]);
-			division.cost[a][b] = (uint8_t)(least < COST_MAX ? least : COST_MAX);
-		}
+	if (n > CUT_MAX || !divide(&division, polygons->faces + begin, n))
+		return 0;
 	return cut_part(triangles, 0, &division, begin, 0, n - 1);
 }

@@ -24,11 +24,12 @@ struct lod_polygons {
  * itself not, its parent among them. */
 void lod_polygons_find(struct lod_polygons *out, const struct lod_tree *tree,
 		       const struct lod_node *node, uint32_t opened);
-/* Returns the number of triangles of all polygons. */
+/* Returns the number of triangles of all polygons, each cut as below. */
 uint32_t lod_polygons_triangles(const struct lod_polygons *polygons);
 
-/* Cuts polygon i into triangles, with as few diagonals in faces of the node as possible. triangles
- * has room for LOD_SEGMENTS_MAX; they are positions in polygons->corners. Returns their number. */
+/* Cuts polygon i into triangles with no diagonal that another node may have too. triangles has room
+ * for LOD_SEGMENTS_MAX; they are positions in polygons->corners. Returns their number; 0: there is
+ * no such way, so it must be cut from a point in its middle, into as many triangles as corners. */
 uint32_t lod_polygon_cut(uint8_t (*triangles)[3], const struct lod_polygons *polygons, uint32_t i);
 
 #endif

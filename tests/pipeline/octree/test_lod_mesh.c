@@ -210,6 +210,51 @@ static void random_signs_are_watertight(void **state)
 	check_budgets("noise", noise, 16, 60);
 }
 
+/* Corners inside of a grid of 4 x 4 x 4 cubes, "xyz xyz ...". */
+static const char *inside_corners;
+
+static double listed(double x, double y, double z)
+{
+	char corner[4];
+
+	for (int k = 0; k < 3; k++)
+		corner[k] = (char)('2' + (int)lrint(2 * (k == 0 ? x : k == 1 ? y : z)));
+	corner[3] = '\0';
+	return strstr(inside_corners, corner) ? -1 : 1;
+}
+
+/* Two nodes that are not opened share a face whose edges are all split, with four or more crossings
+ * on it. Both polygons need a diagonal in that face; once both took the same. */
+static void two_nodes_never_have_the_same_diagonal(void **state)
+{
+	static const char *const sets[] = {
+		"111 211 221 321 331 212 322 113 213 223 323 333",
+		"211 221 321 231 112 212 312 122 132 232 332 113 133",
+		"211 121 221 321 231 112 212 122 322 132 232 213 223 133",
+	};
+	(void)state;
+
+	for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
+		struct lod_mesh mesh = { 0 };
+		struct lod_model model;
+
+		inside_corners = sets[i];
+		model = make_model(listed, 4);
+		for (uint32_t budget = 1; budget <= 120; budget++) {
+			struct edges edges;
+
+			CHECK(lod_mesh_make(&mesh, &model, budget) == 0);
+			edges = judge(&mesh);
+			CHECK(mesh.triangle_count <= budget);
+			CHECK(mesh.triangle_count ==
+			      model.order.triangles[mesh.opened] + 2 * mesh.stars);
+			CHECK(edges.open == 0 && edges.crowded == 0);
+		}
+		lod_mesh_finish(&mesh);
+		lod_model_finish(&model);
+	}
+}
+
 /* The table says exactly how many triangles there are after each step. */
 static void the_accumulation_table_is_exact(void **state)
 {
@@ -299,6 +344,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_budget_is_watertight_and_nearly_used),
 		cmocka_unit_test(random_signs_are_watertight),
+		cmocka_unit_test(two_nodes_never_have_the_same_diagonal),
 		cmocka_unit_test(the_accumulation_table_is_exact),
 		cmocka_unit_test(neighbours_differ_by_one_level),
 		cmocka_unit_test(parents_follow_the_sign_rules),
