@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "pipeline/octree/lod_place.h"
 #include "pipeline/octree/lod_polygon.h"
 
 struct making {
@@ -165,22 +166,21 @@ void lod_mesh_finish(struct lod_mesh *mesh)
 int lod_model_create(struct lod_model *out, struct lod_leaf *leaves, uint32_t leaf_count,
 		     struct lod_vertex *vertices, uint32_t vertex_count)
 {
-	const size_t room = vertex_count + (size_t)1;
-	float(*positions)[3] = malloc(room * sizeof(*positions));
+	float *gains = NULL;
 	int rc;
 
 	*out = (struct lod_model){ .vertices = vertices, .vertex_count = vertex_count };
-	out->numbers = malloc(room * sizeof(*out->numbers));
-	out->drawn = calloc(room, sizeof(*out->drawn));
-	rc = positions && out->numbers && out->drawn ? 0 : -ENOMEM;
+	rc = lod_tree_build(&out->tree, leaves, leaf_count);
 	if (rc == 0)
-		rc = lod_tree_build(&out->tree, leaves, leaf_count);
-	for (uint32_t i = 0; i < vertex_count && rc == 0; i++)
-		for (int k = 0; k < 3; k++)
-			positions[i][k] = (float)vertices[i].place[k] / LOD_CUBE_STEPS;
+		rc = lod_place(&gains, &out->tree, &out->vertices, &out->vertex_count);
 	if (rc == 0)
-		rc = lod_order_make(&out->order, &out->tree, (const float(*)[3])positions);
-	free(positions);
+		rc = lod_order_make(&out->order, &out->tree, gains);
+	free(gains);
+	if (rc == 0) {
+		out->numbers = malloc((out->vertex_count + (size_t)1) * sizeof(*out->numbers));
+		out->drawn = calloc(out->vertex_count + (size_t)1, sizeof(*out->drawn));
+		rc = out->numbers && out->drawn ? 0 : -ENOMEM;
+	}
 	if (rc < 0)
 		lod_model_finish(out);
 	return rc;

@@ -7,20 +7,12 @@
 
 #include "pipeline/octree/lod_order.h"
 
-/* A leaf cube is that many steps wide in struct lod_vertex. */
-enum { LOD_CUBE_STEPS = 256 };
-
-struct lod_vertex {
-	int32_t place[3]; /* in steps */
-	uint8_t colour[4];
-};
-
 /* What the meshes are made of, and room for one of them. All owned. */
 struct lod_model {
 	struct lod_tree tree;
 	struct lod_order order;
 	uint32_t vertex_count;
-	struct lod_vertex *vertices; /* of the finest surface */
+	struct lod_vertex *vertices; /* of the finest surface, then of each coarser level */
 	uint32_t *numbers;           /* of each vertex in the mesh; valid if drawn has the round */
 	uint32_t *drawn;             /* of each vertex: the round in which it was drawn last */
 	uint32_t round;

@@ -5,54 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "geometry/vec.h"
 #include "pipeline/octree/lod_polygon.h"
 
 struct ordering {
 	struct lod_tree *tree;
 	struct lod_order *order;
-	const float (*positions)[3];
-	float *gains;   /* of each node: how much the area changes when it is opened; owned */
-	uint32_t *heap; /* nodes that may be opened next, the best first; owned */
+	const float *gains; /* of each node */
+	uint32_t *heap;     /* nodes that may be opened next, the best first; owned */
 	uint32_t heap_count;
 	uint8_t *counts; /* triangles of each node that is there; owned */
 	uint8_t *levels; /* of each node; owned */
 	uint64_t triangles;
 };
-
-/* ---- gains */
-
-static float own_area(const struct ordering *ordering, const struct lod_node *node)
-{
-	const struct cube_case *drawn = cube_case_of(node->inside);
-	float area = 0;
-
-	for (int t = 0; t < drawn->triangle_count; t++) {
-		const float *a = ordering->positions[node->vertices[drawn->triangles[t][0]]];
-		const float *b = ordering->positions[node->vertices[drawn->triangles[t][1]]];
-		const float *c = ordering->positions[node->vertices[drawn->triangles[t][2]]];
-		float ab[3], ac[3], normal[3];
-
-		vec_sub(ab, b, a);
-		vec_sub(ac, c, a);
-		vec_cross(normal, ab, ac);
-		area += vec_length(normal) / 2;
-	}
-	return area;
-}
-
-static float gain_of(const struct ordering *ordering, const struct lod_node *node)
-{
-	float gain = -own_area(ordering, node);
-
-	for (int c = 0; c < 8; c++) {
-		const struct lod_node *child = lod_child(ordering->tree, node, c);
-
-		if (child)
-			gain += own_area(ordering, child);
-	}
-	return fabsf(gain);
-}
 
 /* ---- the queue: a binary heap */
 
@@ -239,18 +203,17 @@ static int allocate(struct ordering *ordering, uint32_t inner)
 	order->triangles = malloc((inner + (size_t)1) * sizeof(*order->triangles));
 	order->most = malloc((inner + (size_t)1) * sizeof(*order->most));
 	ordering->heap = malloc((inner + (size_t)1) * sizeof(*ordering->heap));
-	ordering->gains = malloc((inner + (size_t)1) * sizeof(*ordering->gains));
 	ordering->counts = calloc(nodes, sizeof(*ordering->counts));
 	ordering->levels = malloc(nodes);
 	if (!order->nodes || !order->triangles || !order->most || !ordering->heap ||
-	    !ordering->gains || !ordering->counts || !ordering->levels)
+	    !ordering->counts || !ordering->levels)
 		return -ENOMEM;
 	return 0;
 }
 
-int lod_order_make(struct lod_order *out, struct lod_tree *tree, const float (*positions)[3])
+int lod_order_make(struct lod_order *out, struct lod_tree *tree, const float *gains)
 {
-	struct ordering ordering = { .tree = tree, .order = out, .positions = positions };
+	struct ordering ordering = { .tree = tree, .order = out, .gains = gains };
 	/* the leaves lie behind all others */
 	const uint32_t inner = tree->level_first[tree->level_count - 1];
 	int rc;
@@ -261,12 +224,9 @@ int lod_order_make(struct lod_order *out, struct lod_tree *tree, const float (*p
 		for (uint32_t level = 0; level < tree->level_count; level++)
 			memset(ordering.levels + tree->level_first[level], (int)level,
 			       tree->level_first[level + 1] - tree->level_first[level]);
-		for (uint32_t i = 0; i < inner; i++)
-			ordering.gains[i] = gain_of(&ordering, &tree->nodes[i]);
 		open_all(&ordering);
 	}
 	free(ordering.heap);
-	free(ordering.gains);
 	free(ordering.counts);
 	free(ordering.levels);
 	if (rc < 0)

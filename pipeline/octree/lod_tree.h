@@ -2,8 +2,8 @@
  * takes its signs and crossing points from its children. The surface has a sign at every corner of
  * the leaf cubes, as cube_surface_draw gives it with is_closed.
  *
- * A parent's edge crosses the surface at the very point where one of its two halves does, so all
- * levels use the vertices of the finest one. */
+ * A parent's edge crosses the surface where one of its two halves does, so at first all levels have
+ * the vertices of the finest one; lod_place gives each its own. */
 #ifndef GOPURA_PIPELINE_OCTREE_LOD_TREE_H
 #define GOPURA_PIPELINE_OCTREE_LOD_TREE_H
 
@@ -16,6 +16,13 @@
 
 enum { LOD_LEVELS_MAX = 21, LOD_CUBE_FACES = 6 };
 #define LOD_NONE UINT32_MAX
+/* A leaf cube is that many steps wide in struct lod_vertex. */
+enum { LOD_CUBE_STEPS = 256 };
+
+struct lod_vertex {
+	int32_t place[3]; /* in steps */
+	uint8_t colour[4];
+};
 
 struct lod_leaf {
 	uint32_t cube[3]; /* below 1 << LOD_LEVELS_MAX - 1 */

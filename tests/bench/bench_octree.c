@@ -8,7 +8,6 @@
 #include <meshoptimizer.h>
 
 #include "base/clock.h"
-#include "base/map.h"
 #include "pipeline/import/alignment.h"
 #include "pipeline/octree/budget_mesh.h"
 #include "tests/bench/surface_error.h"
@@ -99,30 +98,61 @@ static void print_budget(struct lod_model *model, const struct reconstruct_repor
 	lod_mesh_finish(&made);
 }
 
-/* Counts directed edges that have no opposite, and those used twice. */
-static void judge(const struct lod_mesh *mesh, struct map *edges, uint32_t *open, uint32_t *crowded)
+struct edges {
+	uint32_t *begin; /* of each vertex, where the ends of its edges begin; owned */
+	uint32_t *ends;  /* owned */
+};
+
+/* Lists the edges that leave each vertex. */
+static void list_edges(struct edges *edges, const struct lod_mesh *mesh)
 {
-	size_t at = 0;
-	map_key key;
+	const size_t vertices = mesh->vertex_count, sides = 3ul * mesh->triangle_count;
+	uint32_t *begin, *ends;
 
-	map_clear(edges);
-	for (uint32_t t = 0; t < mesh->triangle_count; t++)
-		for (int k = 0; k < 3; k++) {
-			const map_key edge = (map_key)mesh->triangles[t][k] << 32 |
-					     mesh->triangles[t][(k + 1) % 3];
-			const int rc = map_add(edges, edge, 1);
+	free(edges->begin);
+	free(edges->ends);
+	begin = edges->begin = need(calloc(vertices + 2, sizeof(*begin)));
+	ends = edges->ends = need(malloc((sides + 1) * sizeof(*ends)));
+	for (size_t i = 0; i < sides; i++)
+		begin[mesh->triangles[i / 3][i % 3] + 2]++;
+	for (size_t v = 2; v < vertices + 2; v++)
+		begin[v] += begin[v - 1];
+	for (size_t i = 0; i < sides; i++)
+		ends[begin[mesh->triangles[i / 3][i % 3] + 1]++] =
+			mesh->triangles[i / 3][(i + 1) % 3];
+}
 
-			need_ok(rc, "edges");
-			*crowded += rc == 0;
+static uint32_t times(const struct edges *edges, uint32_t from, uint32_t to)
+{
+	uint32_t count = 0;
+
+	for (uint32_t i = edges->begin[from]; i < edges->begin[from + 1]; i++)
+		count += edges->ends[i] == to;
+	return count;
+}
+
+/* Counts directed edges that have no opposite, and the times that one is used again. */
+static void judge(const struct lod_mesh *mesh, struct edges *edges, uint32_t *open,
+		  uint32_t *crowded)
+{
+	list_edges(edges, mesh);
+	for (uint32_t from = 0; from < mesh->vertex_count; from++)
+		for (uint32_t i = edges->begin[from]; i < edges->begin[from + 1]; i++) {
+			const uint32_t to = edges->ends[i];
+
+			for (uint32_t k = edges->begin[from]; k < i; k++)
+				if (edges->ends[k] == to) {
+					++*crowded;
+					break;
+				}
+			*open += times(edges, to, from) == 0;
 		}
-	while (map_next_key(edges, &at, &key))
-		*open += map_get(edges, (key & UINT32_MAX) << 32 | key >> 32) == MAP_NONE;
 }
 
 static void print_random(struct lod_model *model, uint32_t finest)
 {
 	struct lod_mesh mesh = { 0 };
-	struct map edges = { 0 };
+	struct edges edges = { 0 };
 	uint32_t open = 0, crowded = 0, over = 0;
 	double least = 1;
 
@@ -139,7 +169,8 @@ static void print_random(struct lod_model *model, uint32_t finest)
 	printf("\"random_budgets\": %d, \"open_edges\": %u, \"crowded_edges\": %u, \"over\": %u, "
 	       "\"least_used\": %.4f",
 	       RANDOM_BUDGETS, open, crowded, over, least);
-	map_finish(&edges);
+	free(edges.begin);
+	free(edges.ends);
 	lod_mesh_finish(&mesh);
 }
 

@@ -111,6 +111,20 @@ static double ball(double x, double y, double z)
 	return sqrt(x * x + y * y + z * z) - 0.7 - 0.1 * sin(9 * x) * cos(7 * y + 3 * z);
 }
 
+static double round_ball(double x, double y, double z)
+{
+	return sqrt(x * x + y * y + z * z) - 0.7;
+}
+
+/* Its sharp edges lie on no edges of cubes. */
+static double turned_box(double x, double y, double z)
+{
+	const double u = 0.8 * x + 0.6 * y, v = 0.8 * y - 0.6 * x;
+	const double p = 0.8 * u + 0.6 * z, q = 0.8 * z - 0.6 * u;
+
+	return fmax(fabs(p), fmax(fabs(v), fabs(q))) - 0.5;
+}
+
 /* Cubes are in or out at random: every case of marching cubes, next to every other, with cavities,
  * pebbles and handles. */
 static double noise(double x, double y, double z)
@@ -255,6 +269,57 @@ static void two_nodes_never_have_the_same_diagonal(void **state)
 	}
 }
 
+static double volume_of(const struct lod_mesh *mesh)
+{
+	double sum = 0;
+
+	for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+		double p[3][3];
+
+		for (int i = 0; i < 3; i++)
+			for (int k = 0; k < 3; k++)
+				p[i][k] = mesh->vertices[mesh->triangles[t][i]].place[k];
+		for (int k = 0; k < 3; k++)
+			sum += p[0][k] * (p[1][(k + 1) % 3] * p[2][(k + 2) % 3] -
+					  p[1][(k + 2) % 3] * p[2][(k + 1) % 3]);
+	}
+	return sum / 6;
+}
+
+/* Corners on the surface alone would cut off what bulges, and sharp edges. */
+static void coarse_meshes_keep_the_volume(void **state)
+{
+	static const struct {
+		const char *name;
+		shape of;
+		uint32_t budget;
+		double most_percent; /* with corners on the surface alone it would be six times that
+				      */
+	} cases[] = {
+		{ "ball", round_ball, 200, 2 },
+		{ "ball", round_ball, 1000, 0.3 },
+		{ "box", turned_box, 200, 2 },
+		{ "box", turned_box, 1000, 0.4 },
+	};
+	(void)state;
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		struct lod_model model = make_model(cases[i].of, 64);
+		struct lod_mesh mesh = { 0 };
+		double finest, coarse;
+
+		CHECK(lod_mesh_make(&mesh, &model, UINT32_MAX) == 0);
+		finest = volume_of(&mesh);
+		CHECK(lod_mesh_make(&mesh, &model, cases[i].budget) == 0);
+		coarse = volume_of(&mesh);
+		print_message("%s, %u triangles: %.2f %% of the volume is missing\n", cases[i].name,
+			      mesh.triangle_count, 100 * (1 - coarse / finest));
+		CHECK(100 * fabs(1 - coarse / finest) < cases[i].most_percent);
+		lod_mesh_finish(&mesh);
+		lod_model_finish(&model);
+	}
+}
+
 /* The table says exactly how many triangles there are after each step. */
 static void the_accumulation_table_is_exact(void **state)
 {
@@ -345,6 +410,7 @@ int main(void)
 		cmocka_unit_test(every_budget_is_watertight_and_nearly_used),
 		cmocka_unit_test(random_signs_are_watertight),
 		cmocka_unit_test(two_nodes_never_have_the_same_diagonal),
+		cmocka_unit_test(coarse_meshes_keep_the_volume),
 		cmocka_unit_test(the_accumulation_table_is_exact),
 		cmocka_unit_test(neighbours_differ_by_one_level),
 		cmocka_unit_test(parents_follow_the_sign_rules),
