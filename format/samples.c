@@ -43,9 +43,50 @@ static bool read_presence(struct reader *reader, uint32_t *children, uint32_t co
 	return !reader->failed;
 }
 
+/* Of the grid. */
 static uint32_t brick_total(const struct samples_page *samples)
 {
 	return samples->bricks[0] * samples->bricks[1] * samples->bricks[2];
+}
+
+uint32_t samples_page_bricks(const struct samples_page *samples)
+{
+	return brick_total(samples) + (samples->vantage_count > 0);
+}
+
+/* Their brick is the child after those of the grid, so its number needs no bytes. */
+static void put_vantages(struct buffer *out, const struct samples_page *samples)
+{
+	if (samples->vantage_count == 0)
+		return;
+	assert(samples->brick_child[brick_total(samples)] != SAMPLE_NONE);
+	buffer_put_u8(out, (uint8_t)samples->vantage_count);
+	for (uint32_t i = 0; i < samples->vantage_count; i++)
+		for (int k = 0; k < 3; k++)
+			buffer_put_f32(out, samples->vantage_m[i][k]);
+}
+
+/* Reads them where the page goes on after its bricks. */
+static bool read_vantages(struct reader *reader, struct samples_page *out)
+{
+	const uint32_t total = brick_total(out);
+	uint32_t next = 0;
+
+	if (reader_left(reader) == 0)
+		return true;
+	out->vantage_count = reader_u8(reader);
+	if (out->vantage_count < 1 || out->vantage_count > SAMPLE_VANTAGES_MAX)
+		return false;
+	for (uint32_t i = 0; i < out->vantage_count; i++)
+		for (int k = 0; k < 3; k++) {
+			out->vantage_m[i][k] = reader_f32(reader);
+			if (!isfinite(out->vantage_m[i][k]))
+				return false;
+		}
+	for (uint32_t i = 0; i < total; i++)
+		next += out->brick_child[i] != SAMPLE_NONE;
+	out->brick_child[total] = next;
+	return !reader->failed;
 }
 
 void samples_page_encode(struct buffer *out, const struct samples_page *samples)
@@ -60,6 +101,7 @@ void samples_page_encode(struct buffer *out, const struct samples_page *samples)
 	}
 	buffer_put_u8(out, samples->level_count);
 	put_presence(out, samples->brick_child, brick_total(samples));
+	put_vantages(out, samples);
 }
 
 static bool read_grid(struct reader *reader, struct samples_page *out)
@@ -92,12 +134,13 @@ int samples_page_decode(struct samples_page *out, struct bytes payload)
 	reader_init(&reader, payload);
 	if (!read_grid(&reader, out))
 		goto bad;
-	out->brick_child = malloc(brick_total(out) * sizeof(*out->brick_child));
+	out->brick_child = malloc((brick_total(out) + 1) * sizeof(*out->brick_child));
 	if (!out->brick_child) {
 		*out = (struct samples_page){ 0 };
 		return -ENOMEM;
 	}
-	if (!read_presence(&reader, out->brick_child, brick_total(out)) || reader_left(&reader))
+	if (!read_presence(&reader, out->brick_child, brick_total(out)) ||
+	    !read_vantages(&reader, out) || reader_left(&reader))
 		goto bad;
 	return 0;
 bad:

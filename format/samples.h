@@ -1,17 +1,19 @@
 /* The sampling repository (paper P0 5.2) as pages and tiles.
  *
- * Points lie on a regular grid: point (x, y, z) is at origin + spacing * (x, y, z). At each point
- * six faces (format/cube.h) are rendered from the full hierarchy. The finest level has
- * SAMPLE_TILE_PX << (level_count - 1) pixels a side; each coarser level has half of that, down to
- * one tile. A level is cut into tiles of SAMPLE_TILE_PX pixels. Each tile is stored with an apron
- * of SAMPLE_APRON_PX on every side, so that bilinear filtering never needs a neighbour. The apron
- * repeats the pixels of the neighbouring tile or, at the edge of the face, continues the plane of
- * the face. Tile and apron together are whole blocks of the coding (docs/samples.md). A tile that
- * shows nothing of the model is absent.
+ * Points lie on a regular grid: point (x, y, z) is at origin + spacing * (x, y, z). Beside the grid
+ * there may be vantage points, each at an eye from which many visitors look: what it sampled is
+ * seen from there without parallax, whatever the mesh. At each point six faces (format/cube.h) are
+ * rendered from the full hierarchy. The finest level has SAMPLE_TILE_PX << (level_count - 1) pixels
+ * a side; each coarser level has half of that, down to one tile. A level is cut into tiles of
+ * SAMPLE_TILE_PX pixels. Each tile is stored with an apron of SAMPLE_APRON_PX on every side, so
+ * that bilinear filtering never needs a neighbour. The apron repeats the pixels of the neighbouring
+ * tile or, at the edge of the face, continues the plane of the face. Tile and apron together are
+ * whole blocks of the coding (docs/samples.md). A tile that shows nothing of the model is absent.
  *
  * Three kinds of page: PAGE_SAMPLES (one; the grid; children: bricks that hold anything) ->
- * PAGE_BRICK (4 x 4 x 4 points; children: faces that show anything) -> PAGE_FACE (children: the
- * tiles that exist, level by level from the coarsest, each level in Morton order). */
+ * PAGE_BRICK (4 x 4 x 4 points, or all vantage points; children: faces that show anything) ->
+ * PAGE_FACE (children: the tiles that exist, level by level from the coarsest, each level in Morton
+ * order). */
 #ifndef GOPURA_FORMAT_SAMPLES_H
 #define GOPURA_FORMAT_SAMPLES_H
 
@@ -26,6 +28,7 @@ enum {
 	SAMPLE_GRID_MAX = 64,  /* points a side */
 	BRICK_SIDE = 4,        /* points */
 	BRICK_POINTS = BRICK_SIDE * BRICK_SIDE * BRICK_SIDE,
+	SAMPLE_VANTAGES_MAX = BRICK_POINTS, /* they are points of one brick */
 	FACE_TILES_MAX = 1 + 4 + 16 + 64 + 256 + 1024
 };
 
@@ -34,9 +37,12 @@ struct samples_page {
 	uint8_t count[3];    /* points a side */
 	uint8_t level_count; /* level l has SAMPLE_TILE_PX << l pixels a side */
 	/* The child number of brick (bx, by, bz), or SAMPLE_NONE: nothing was sampled there. Index:
-	 * (bz * bricks[1] + by) * bricks[0] + bx. Owned. */
+	 * (bz * bricks[1] + by) * bricks[0] + bx. If there are vantage points, their brick is the
+	 * last, and exists. Owned. */
 	uint32_t bricks[3];
 	uint32_t *brick_child;
+	uint32_t vantage_count; /* 0 .. SAMPLE_VANTAGES_MAX */
+	float vantage_m[SAMPLE_VANTAGES_MAX][3];
 };
 
 /* In all three pages, children are numbered in the order of their index here, without gaps. The
@@ -44,6 +50,9 @@ struct samples_page {
  * used, it must be checked against the page's child_count. */
 
 #define SAMPLE_NONE UINT32_MAX
+
+/* Returns the length of brick_child. */
+uint32_t samples_page_bricks(const struct samples_page *samples);
 
 /* Appends the payload, for page.payload; so do the other two encoders. Failures are out->error.
  * Children must be numbered as described above: the encoders assert it. */

@@ -218,9 +218,12 @@ static int look_for_samples(struct looking *looking)
 	if (rc < 0 && rc != -ENOENT)
 		return fail(&diagnostics, rc);
 	looking->grid = progress.grid;
-	if (progress.point_count == 0)
+	if (progress.point_count == 0) {
 		sampler_grid(&looking->grid, looking->low_m, looking->high_m,
 			     looking->content->grid_points, looking->content->face_px, false);
+		sampler_add_first_view(&looking->grid, looking->content, looking->low_m,
+				       looking->high_m);
+	}
 	sampling_forecast(&forecast, &looking->grid, (const float(*)[3])looking->places_m,
 			  looking->place_count, looking->low_m, looking->high_m);
 	work->point_count = forecast.point_count;

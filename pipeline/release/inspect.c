@@ -107,6 +107,8 @@ static int print_samples(FILE *to, const struct page *page)
 		samples.count[1], samples.count[2]);
 	print_vector(to, "from", samples.origin_m);
 	print_vector(to, "spacing", samples.spacing_m);
+	for (uint32_t i = 0; i < samples.vantage_count; i++)
+		print_vector(to, "vantage point", samples.vantage_m[i]);
 	fprintf(to, "  finest face        %u px\n", SAMPLE_TILE_PX << (samples.level_count - 1));
 	samples_page_finish(&samples);
 	return 0;

@@ -21,7 +21,7 @@
 #include "pipeline/release/publish_stream.h"
 #include "pipeline/release/published.h"
 #include "pipeline/release/release_tuf.h"
-#include "pipeline/release/start_view.h"
+#include "pipeline/content/start_view.h"
 
 /* The target folder and the signing keys. */
 struct destination {

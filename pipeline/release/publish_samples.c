@@ -142,12 +142,23 @@ static int start(struct samples_writer *writer, const struct samples_store *stor
 		total *= page->bricks[axis];
 	}
 	page->level_count = (uint8_t)grid->level_count;
-	page->brick_child = malloc(total * sizeof(*page->brick_child));
+	page->brick_child = malloc((total + 1) * sizeof(*page->brick_child));
 	if (!page->brick_child)
 		return -ENOMEM;
 	memset(page->brick_child, 0xff, total * sizeof(*page->brick_child));
+	page->brick_child[total] = SAMPLE_NONE;
+	page->vantage_count = grid->vantage_count;
+	memcpy(page->vantage_m, grid->vantage_m, sizeof(page->vantage_m));
 	writer->brick_index = SAMPLE_NONE;
 	return 0;
+}
+
+/* Vantage points that see nothing are left out. */
+static void leave_out_blind(struct samples_page *page)
+{
+	if (page->vantage_count > 0 &&
+	    page->brick_child[samples_page_bricks(page) - 1] == SAMPLE_NONE)
+		page->vantage_count = 0;
 }
 
 int publish_samples(struct object_store *objects, struct samples_store *store,
@@ -169,6 +180,7 @@ int publish_samples(struct object_store *objects, struct samples_store *store,
 	if (rc == 0)
 		rc = close_brick(writer);
 	if (rc == 0) {
+		leave_out_blind(&writer->page);
 		samples_page_encode(&payload, &writer->page);
 		rc = add_page(objects, PAGE_SAMPLES, &writer->bricks, &payload, out);
 	}

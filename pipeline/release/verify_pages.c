@@ -230,8 +230,7 @@ int verify_samples_page(struct verify_walk *walk, const struct verify_page *page
 
 	if (rc < 0)
 		return rc;
-	if (children_named(samples->brick_child,
-			   samples->bricks[0] * samples->bricks[1] * samples->bricks[2]) !=
+	if (children_named(samples->brick_child, samples_page_bricks(samples)) !=
 	    page->page.child_count)
 		return blame_page(walk, page, "has another number of children than of bricks");
 	for (uint32_t i = 0; rc == 0 && i < page->page.child_count; i++)

@@ -123,8 +123,7 @@ static void put_facts(FILE *to, const struct report_data *data)
 	fprintf(to, "</b><span>triangles published, %.1f&#8239;%%</span></div>\n",
 		100 * (double)publish->published_triangles /
 			(double)data->master->source_triangles);
-	put_count(to, (uint64_t)grid->count[0] * grid->count[1] * grid->count[2],
-		  "sampling points");
+	put_count(to, sample_grid_points(grid), "sampling points");
 	put_fact_begin(to);
 	html_bytes(to, publish->release_bytes);
 	put_fact_end(to, "release");
@@ -354,6 +353,14 @@ static double coverage_of(const struct report_face *face)
 	return face ? __builtin_popcount(face->coverage) / 16.0 : 0;
 }
 
+static void put_point_name(FILE *to, const struct report_data *data, const uint32_t point[3])
+{
+	if (sample_grid_vantage(samples_store_grid(data->store), point) >= 0)
+		fputs("first view", to);
+	else
+		fprintf(to, "%u, %u, %u", point[0], point[1], point[2]);
+}
+
 /* The faces of a point, NULL where nothing shows. */
 struct point_faces {
 	const struct report_face *of[CUBE_FACES];
@@ -460,6 +467,27 @@ static void put_layers(FILE *to, const struct report_data *data)
 	fputs("</div>\n", to);
 }
 
+/* Vantage points, which are on no layer. */
+static void put_vantages(FILE *to, const struct report_data *data)
+{
+	const struct sample_grid *grid = samples_store_grid(data->store);
+
+	for (uint32_t i = 0; i < grid->vantage_count; i++) {
+		struct point_faces faces;
+		uint32_t point[3], count = 0;
+
+		sample_grid_point(grid, sample_grid_points(grid) - grid->vantage_count + i, point);
+		faces = faces_of(data, point);
+		for (int face = 0; face < CUBE_FACES; face++)
+			count += faces.of[face] != NULL;
+		fputs("<p>The ", to);
+		put_point_name(to, data, point);
+		fprintf(to, " has a sampling point of its own: %u faces, ", count);
+		html_bytes(to, faces.bytes);
+		fputs(".</p>\n", to);
+	}
+}
+
 static void put_thumbnails(FILE *to, const struct report_data *data)
 {
 	fputs("<p style=\"margin-top:18px\">Some of the faces, at their coarsest:</p>"
@@ -472,8 +500,9 @@ static void put_thumbnails(FILE *to, const struct report_data *data)
 			continue;
 		fputs("<figure><img alt=\"\" src=\"", to);
 		html_data(to, "image/webp", buffer_bytes(&face->thumbnail));
-		fprintf(to, "\"><figcaption>%u, %u, %u: %s</figcaption></figure>\n", face->point[0],
-			face->point[1], face->point[2], cube_face_names[face->face]);
+		fputs("\"><figcaption>", to);
+		put_point_name(to, data, face->point);
+		fprintf(to, ": %s</figcaption></figure>\n", cube_face_names[face->face]);
 	}
 	fputs("</div></section>\n", to);
 }
@@ -495,6 +524,7 @@ static void put_samples(FILE *to, const struct report_data *data)
 	put_count(to, data->tile_count, "tiles");
 	fputs("</div>\n", to);
 	put_layers(to, data);
+	put_vantages(to, data);
 	put_thumbnails(to, data);
 }
 
@@ -573,12 +603,14 @@ static void put_costly(FILE *to, const struct report_data *data)
 	for (uint32_t i = 0; i < data->costly_count; i++) {
 		const struct report_costly *costly = &data->costly[i];
 
-		if (costly->is_face)
-			fprintf(to, "<tr><td>face %s of point %u, %u, %u</td>",
-				cube_face_names[costly->face], costly->point[0], costly->point[1],
-				costly->point[2]);
-		else
-			fputs("<tr><td>a group of patches</td>", to);
+		fputs("<tr><td>", to);
+		if (costly->is_face) {
+			fprintf(to, "face %s of point ", cube_face_names[costly->face]);
+			put_point_name(to, data, costly->point);
+		} else {
+			fputs("a group of patches", to);
+		}
+		fputs("</td>", to);
 		html_bar(to, (double)costly->bytes / (double)data->costly[0].bytes);
 		html_bytes(to, costly->bytes);
 		html_bar_end(to);

@@ -123,9 +123,7 @@ static int read_hierarchy(struct report_data *data)
 
 uint32_t report_data_point(const struct report_data *data, const uint32_t point[3])
 {
-	const struct sample_grid *grid = samples_store_grid(data->store);
-
-	return (point[2] * grid->count[1] + point[1]) * grid->count[0] + point[0];
+	return sample_grid_number(samples_store_grid(data->store), point);
 }
 
 /* What a face shows is taken to lie in its middle, between its nearest and farthest. */
@@ -219,8 +217,7 @@ static int read_samples(struct report_data *data)
 		return rc;
 	samples_store_states(data->store, data->states);
 	grid = samples_store_grid(data->store);
-	data->face_at = calloc((size_t)grid->count[0] * grid->count[1] * grid->count[2],
-			       sizeof(*data->face_at));
+	data->face_at = calloc(sample_grid_points(grid), sizeof(*data->face_at));
 	if (!data->face_at)
 		return -ENOMEM;
 	while ((rc = samples_store_next(data->store, &face)) == 1) {

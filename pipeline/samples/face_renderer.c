@@ -333,7 +333,7 @@ static int render(struct face_renderer *renderer, struct shot *shot, const float
 }
 
 int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const float point_m[3],
-		       int face)
+		       int face, const uint8_t *background)
 {
 	bool found;
 	int rc;
@@ -349,7 +349,10 @@ int face_renderer_take(struct face_renderer *renderer, struct shot *shot, const 
 	if (!shot->coverage) /* only the aprons show something */
 		return 0;
 	pyramid_reduce(&renderer->pyramid);
-	pyramid_fill(&renderer->pyramid);
+	if (background)
+		pyramid_lay_over(&renderer->pyramid, background);
+	else
+		pyramid_fill(&renderer->pyramid);
 	if (renderer->options.scale_count > 0 && renderer->raster)
 		rc = face_features_count(renderer->features, renderer->raster,
 					 (uint32_t)renderer->frame_px, (uint32_t)renderer->samples,

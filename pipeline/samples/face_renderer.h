@@ -58,9 +58,10 @@ struct sight *face_renderer_sight(struct face_renderer *renderer);
 void shot_init(struct shot *shot);
 /* Frees the encoded tiles. */
 void shot_finish(struct shot *shot);
-/* Renders a face (0..5, format/cube.h) at point_m into shot, which may have been used before.
- * Returns -ENOMEM, or the errors of GL and the encoder. */
+/* Renders a face (0..5, format/cube.h) at point_m into shot, which may have been used before. What
+ * shows nothing has the colour of the background (sRGB), or without one the colours nearby. Returns
+ * -ENOMEM, or the errors of GL and the encoder. */
 must_check int face_renderer_take(struct face_renderer *renderer, struct shot *shot,
-				  const float point_m[3], int face);
+				  const float point_m[3], int face, const uint8_t *background);
 
 #endif

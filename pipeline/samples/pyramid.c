@@ -238,6 +238,20 @@ void pyramid_fill(struct pyramid *pyramid)
 		fill(pyramid, level - 1, pyramid->weighed);
 }
 
+void pyramid_lay_over(struct pyramid *pyramid, const uint8_t rgb[3])
+{
+	for (uint32_t level = 0; level < pyramid->level_count; level++) {
+		const size_t side = pyramid->side_px[level];
+		uint8_t(*pixels)[4] = pyramid->levels[level];
+
+		for (size_t i = 0; i < side * side; i++)
+			for (int c = 0; c < 3; c++)
+				pixels[i][c] = (uint8_t)((pixels[i][c] * pixels[i][3] +
+							  rgb[c] * (255 - pixels[i][3]) + 127) /
+							 255);
+	}
+}
+
 /* The share, in 64ths, of the difference to each of its four neighbours that is added to a
  * pixel. */
 enum { SHARPENING = 8 };

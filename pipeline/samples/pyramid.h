@@ -35,6 +35,8 @@ bool pyramid_shows(const struct pyramid *pyramid, uint32_t level, uint32_t x, ui
 void pyramid_reduce(struct pyramid *pyramid);
 /* Sets the colours of uncovered pixels from the next coarser level. Coverage stays. */
 void pyramid_fill(struct pyramid *pyramid);
+/* Lays every level over a background of one colour instead; coverage stays. */
+void pyramid_lay_over(struct pyramid *pyramid, const uint8_t rgb[3]);
 /* Copies a square of a level, sharpened to compensate for the blur of display: texels are means
  * over their squares, and the kiosk interpolates between them. The square lies within the level;
  * side_px is at most PYRAMID_SQUARE_MAX. rgb: side_px * side_px * 3 bytes. */

@@ -53,9 +53,22 @@ static int samples_dir(char *out, size_t size, const char *content_dir)
 	return n < 0 || (size_t)n >= size ? -ENAMETOOLONG : 0;
 }
 
-static void point_path(char out[PATH_MAX], const char *dir, const uint32_t point[3])
+/* The name of a vantage point's file is where it is and before what: one that moved is another, and
+ * the others stay. */
+static void point_path(char out[PATH_MAX], const char *dir, const struct sample_grid *grid,
+		       const uint32_t point[3])
 {
-	snprintf(out, PATH_MAX, "%s/%02u-%02u-%02u", dir, point[0], point[1], point[2]);
+	const int vantage = sample_grid_vantage(grid, point);
+	const uint8_t *sky = grid->background;
+	uint32_t at[3];
+
+	if (vantage < 0) {
+		snprintf(out, PATH_MAX, "%s/%02u-%02u-%02u", dir, point[0], point[1], point[2]);
+		return;
+	}
+	memcpy(at, grid->vantage_m[vantage], sizeof(at));
+	snprintf(out, PATH_MAX, "%s/at-%08x-%08x-%08x-%02x%02x%02x", dir, at[0], at[1], at[2],
+		 sky[0], sky[1], sky[2]);
 }
 
 static bool grid_is_sane(const struct sample_grid *grid)
@@ -68,7 +81,12 @@ static bool grid_is_sane(const struct sample_grid *grid)
 		if (grid->qualities[c] < 1 || grid->qualities[c] > 100 ||
 		    (c > 0 && grid->qualities[c] <= grid->qualities[c - 1]))
 			return false;
+	for (uint32_t i = 0; i < grid->vantage_count && i < SAMPLE_VANTAGES_MAX; i++)
+		for (int k = 0; k < 3; k++)
+			if (!isfinite(grid->vantage_m[i][k]))
+				return false;
 	return grid->level_count >= 1 && grid->level_count <= SAMPLE_LEVELS_MAX &&
+	       grid->vantage_count <= SAMPLE_VANTAGES_MAX &&
 	       grid->choice_count <= SAMPLE_CHOICES_MAX && grid->scale_count <= SAMPLE_SCALES_MAX;
 }
 
@@ -90,6 +108,14 @@ static bool read_grid(struct samples_store *store)
 		store->grid.scale_count = reader_u8(&reader);
 		for (uint32_t c = 0; c < store->grid.choice_count && c < SAMPLE_CHOICES_MAX; c++)
 			store->grid.qualities[c] = reader_u8(&reader);
+	}
+	if (reader_left(&reader) > 0) {
+		store->grid.vantage_count = reader_u8(&reader);
+		for (uint32_t i = 0; i < store->grid.vantage_count && i < SAMPLE_VANTAGES_MAX; i++)
+			for (int k = 0; k < 3; k++)
+				store->grid.vantage_m[i][k] = reader_f32(&reader);
+		for (int k = 0; k < 3; k++)
+			store->grid.background[k] = reader_u8(&reader);
 	}
 	return !reader.failed && !reader_left(&reader) && grid_is_sane(&store->grid);
 }
@@ -125,9 +151,65 @@ static uint32_t number_of(const struct sample_grid *grid, const uint32_t point[3
 	return brick * BRICK_POINTS + in;
 }
 
-static bool point_exists(const struct sample_grid *grid, const uint32_t point[3])
+static bool is_on_grid(const struct sample_grid *grid, const uint32_t point[3])
 {
 	return point[0] < grid->count[0] && point[1] < grid->count[1] && point[2] < grid->count[2];
+}
+
+static bool point_exists(const struct sample_grid *grid, const uint32_t point[3])
+{
+	const int vantage = sample_grid_vantage(grid, point);
+
+	return is_on_grid(grid, point) || (vantage >= 0 && (uint32_t)vantage < grid->vantage_count);
+}
+
+/* The height of the brick of the vantage points, in points. */
+static uint32_t vantage_layer(const struct sample_grid *grid)
+{
+	return (grid->count[2] + BRICK_SIDE - 1) / BRICK_SIDE * BRICK_SIDE;
+}
+
+int sample_grid_vantage(const struct sample_grid *grid, const uint32_t point[3])
+{
+	const uint32_t layer = vantage_layer(grid);
+
+	if (point[0] >= BRICK_SIDE || point[1] >= BRICK_SIDE || point[2] < layer ||
+	    point[2] >= layer + BRICK_SIDE)
+		return -1;
+	return (int)(((point[2] - layer) * BRICK_SIDE + point[1]) * BRICK_SIDE + point[0]);
+}
+
+static uint32_t points_on_grid(const struct sample_grid *grid)
+{
+	return grid->count[0] * grid->count[1] * grid->count[2];
+}
+
+uint32_t sample_grid_points(const struct sample_grid *grid)
+{
+	return points_on_grid(grid) + grid->vantage_count;
+}
+
+void sample_grid_point(const struct sample_grid *grid, uint32_t n, uint32_t out[3])
+{
+	const uint32_t *count = grid->count, on_grid = points_on_grid(grid);
+	const uint32_t brick[3] = { BRICK_SIDE, BRICK_SIDE, BRICK_SIDE };
+	uint32_t layer = 0;
+
+	if (n >= on_grid) {
+		n -= on_grid;
+		count = brick;
+		layer = vantage_layer(grid);
+	}
+	out[0] = n % count[0];
+	out[1] = n / count[0] % count[1];
+	out[2] = layer + n / count[0] / count[1];
+}
+
+uint32_t sample_grid_number(const struct sample_grid *grid, const uint32_t point[3])
+{
+	if (is_on_grid(grid, point))
+		return (point[2] * grid->count[1] + point[1]) * grid->count[0] + point[0];
+	return points_on_grid(grid) + (uint32_t)sample_grid_vantage(grid, point);
 }
 
 /* ---- the index */
@@ -230,7 +312,7 @@ static int look_at(struct samples_store *store, uint32_t n, const uint32_t place
 	char path[PATH_MAX];
 	int rc;
 
-	point_path(path, store->dir, place);
+	point_path(path, store->dir, &store->grid, place);
 	if (stat(path, &status) < 0)
 		return -errno;
 	if (is_file_of(point, &status))
@@ -283,7 +365,8 @@ static int make_points(struct samples_store *store)
 	char path[PATH_MAX];
 
 	count_bricks(&store->grid, bricks);
-	store->point_count = bricks[0] * bricks[1] * bricks[2] * BRICK_POINTS;
+	store->point_count = (bricks[0] * bricks[1] * bricks[2] + (store->grid.vantage_count > 0)) *
+			     BRICK_POINTS;
 	store->points = calloc(store->point_count, sizeof(*store->points));
 	if (!store->points)
 		return -ENOMEM;
@@ -463,7 +546,7 @@ static bool advance(struct samples_store *store)
 		    store->summary.faces_left == 0)
 			continue;
 		point_in_order(&store->grid, n, store->place);
-		point_path(store->path, store->dir, store->place);
+		point_path(store->path, store->dir, &store->grid, store->place);
 		return true;
 	}
 	return false;
@@ -497,7 +580,7 @@ int samples_store_stat(const struct samples_store *store, const uint32_t point[3
 {
 	char path[PATH_MAX];
 
-	point_path(path, store->dir, point);
+	point_path(path, store->dir, &store->grid, point);
 	return stat(path, out) < 0 ? -errno : 0;
 }
 
@@ -515,6 +598,28 @@ static int make_dirs(const char *content_dir)
 			return -errno;
 	}
 	return 0;
+}
+
+static void put_choices(struct buffer *file, const struct sample_grid *grid)
+{
+	const uint32_t count = grid->choice_count > 1 ? grid->choice_count : 0;
+
+	if (count == 0 && grid->vantage_count == 0)
+		return;
+	buffer_put_u8(file, (uint8_t)count);
+	buffer_put_u8(file, (uint8_t)(count > 0 ? grid->scale_count : 0));
+	buffer_put(file, grid->qualities, count);
+}
+
+static void put_vantages(struct buffer *file, const struct sample_grid *grid)
+{
+	if (grid->vantage_count == 0)
+		return;
+	buffer_put_u8(file, (uint8_t)grid->vantage_count);
+	for (uint32_t i = 0; i < grid->vantage_count; i++)
+		for (int k = 0; k < 3; k++)
+			buffer_put_f32(file, grid->vantage_m[i][k]);
+	buffer_put(file, grid->background, sizeof(grid->background));
 }
 
 int samples_store_begin(const char *content_dir, const struct sample_grid *grid, struct hash key)
@@ -535,11 +640,8 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	for (int i = 0; i < 3; i++)
 		buffer_put_u32(&file, grid->count[i]);
 	buffer_put_u32(&file, grid->level_count);
-	if (grid->choice_count > 1) {
-		buffer_put_u8(&file, (uint8_t)grid->choice_count);
-		buffer_put_u8(&file, (uint8_t)grid->scale_count);
-		buffer_put(&file, grid->qualities, grid->choice_count);
-	}
+	put_choices(&file, grid);
+	put_vantages(&file, grid);
 	sample_file_seal(&file);
 	rc = file.error;
 	if (snprintf(path, sizeof(path), "%s/.work/samples/grid", content_dir) >= PATH_MAX)
@@ -562,7 +664,7 @@ int samples_store_put(const char *content_dir, struct hash key, const struct sam
 
 	if (rc < 0)
 		return rc;
-	point_path(path, dir, point);
+	point_path(path, dir, grid, point);
 	buffer_init(&file, SAMPLE_FILE_BYTES_MAX);
 	sample_file_begin(&file, point_magic, key);
 	sample_file_put_point(&file, grid, state, faces, face_count);

@@ -28,6 +28,10 @@ struct sample_grid {
 	float origin_m[3], spacing_m[3];
 	uint32_t count[3];    /* points per axis, 1 .. SAMPLE_GRID_MAX */
 	uint32_t level_count; /* levels of a face */
+	/* Vantage points (format/samples.h). */
+	uint32_t vantage_count; /* 0 .. SAMPLE_VANTAGES_MAX */
+	float vantage_m[SAMPLE_VANTAGES_MAX][3];
+	uint8_t background[3]; /* of what they see, sRGB */
 	/* For a release that has to meet a number of bytes, each tile is stored at several
 	 * qualities, ascending, of which one is published. 0 or 1: there is one, no choice. */
 	uint32_t choice_count;
@@ -37,9 +41,19 @@ struct sample_grid {
 	uint32_t scale_count;
 };
 
+/* Returns how many points there are: those of the grid, then the vantage points. */
+uint32_t sample_grid_points(const struct sample_grid *grid);
+/* Sets out to the n-th of them: x, y, z on the grid. Vantage points are those of one more brick, on
+ * top of the first. */
+void sample_grid_point(const struct sample_grid *grid, uint32_t n, uint32_t out[3]);
+/* The inverse. The point must exist. */
+uint32_t sample_grid_number(const struct sample_grid *grid, const uint32_t point[3]);
+/* Returns the number of a vantage point, or -1 for a point of the grid. */
+int sample_grid_vantage(const struct sample_grid *grid, const uint32_t point[3]);
+
 /* One face that shows something of the model. */
 struct sample_face {
-	uint32_t point[3]; /* x, y, z on the grid */
+	uint32_t point[3]; /* see sample_grid_point */
 	int face;
 	uint32_t level_count;
 	uint16_t coverage;     /* as in brick_page; never 0 */

@@ -17,6 +17,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "format/tile.h"
+#include "pipeline/content/start_view.h"
 #include "pipeline/samples/chunks.h"
 #include "pipeline/samples/face_renderer.h"
 #include "pipeline/samples/model_master.h"
@@ -95,11 +96,18 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 
 void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t point[3])
 {
+	const int vantage = sample_grid_vantage(grid, point);
+
+	if (vantage >= 0) {
+		memcpy(out, grid->vantage_m[vantage], sizeof(grid->vantage_m[0]));
+		return;
+	}
 	for (int i = 0; i < 3; i++)
 		out[i] = grid->origin_m[i] + grid->spacing_m[i] * (float)point[i];
 }
 
-/* master: NULL if the mesh itself is drawn. */
+/* Vantage points do not count: where one is its file says. master: NULL if the mesh itself is
+ * drawn. */
 static struct hash make_key(const struct sampling *sampling, struct hash mesh_key,
 			    const struct master *master)
 {
@@ -138,9 +146,8 @@ static struct hash make_key(const struct sampling *sampling, struct hash mesh_ke
 /* Lists the points of the shard that are still missing. */
 static int list_points(struct sampling *sampling, const struct sampler_options *options)
 {
-	const uint32_t *count = sampling->grid.count;
+	const uint32_t total = sample_grid_points(&sampling->grid);
 	const struct shard shard = options->shard;
-	uint32_t total = count[0] * count[1] * count[2];
 	struct samples_store *store;
 	int rc = samples_store_look(&store, sampling->content->folder);
 
@@ -152,9 +159,7 @@ static int list_points(struct sampling *sampling, const struct sampler_options *
 
 		if (shard.count > 1 && n % shard.count != shard.number)
 			continue;
-		point[0] = n % count[0];
-		point[1] = n / count[0] % count[1];
-		point[2] = n / count[0] / count[1];
+		sample_grid_point(&sampling->grid, n, point);
 		if (!samples_store_has(store, point))
 			sampling->point_count++;
 	}
@@ -219,13 +224,15 @@ static void describe_face(struct taken *taken, uint32_t n, int face, const struc
 /* Renders the six faces. Returns how many show anything, or a negative errno; *state is
  * SAMPLE_RENDERED, SAMPLE_EMPTY or SAMPLE_INSIDE. */
 static int take_faces(const struct sampling *sampling, struct face_renderer *renderer,
-		      struct taken *taken, const float place[3], enum sample_state *state)
+		      struct taken *taken, const float place[3], bool is_vantage,
+		      enum sample_state *state)
 {
+	const uint8_t *background = is_vantage ? sampling->grid.background : NULL;
 	uint64_t covered = 0, backs = 0;
 	uint32_t count = 0;
 
 	for (int face = 0; face < CUBE_FACES; face++) {
-		int rc = face_renderer_take(renderer, &taken->shots[face], place, face);
+		int rc = face_renderer_take(renderer, &taken->shots[face], place, face, background);
 
 		if (rc < 0)
 			return rc;
@@ -254,7 +261,8 @@ static int take_point(const struct sampling *sampling, struct face_renderer *ren
 	sight_look(sight, place, detail_texels * 2 / (float)face_px);
 	rc = judge_point(sampling, sight, place, &state);
 	if (rc == 0 && state == SAMPLE_RENDERED) {
-		count = take_faces(sampling, renderer, taken, place, &state);
+		count = take_faces(sampling, renderer, taken, place,
+				   sample_grid_vantage(&sampling->grid, point) >= 0, &state);
 		rc = count < 0 ? count : 0;
 	}
 	if (rc < 0)
@@ -445,6 +453,18 @@ static void set_choices(struct sample_grid *grid, const struct content *content)
 		content->quality_rule == CONTENT_QUALITY_FEATURES ? SAMPLE_SCALES_MAX : 0;
 }
 
+void sampler_add_first_view(struct sample_grid *grid, const struct content *content,
+			    const float low_m[3], const float high_m[3])
+{
+	float target_m[3];
+
+	start_view(grid->vantage_m[0], target_m, low_m, high_m);
+	if (content->has_start)
+		memcpy(grid->vantage_m[0], content->start_eye_m, sizeof(grid->vantage_m[0]));
+	grid->vantage_count = 1;
+	memcpy(grid->background, content->background, sizeof(grid->background));
+}
+
 /* Chooses grid and light for the scans' shape, and the key. */
 static int prepare(struct sampling *sampling, struct scans *scans, const struct scans_shape *shape,
 		   const struct sampler_options *options, struct diagnostics *diagnostics)
@@ -467,6 +487,7 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 	memcpy(sampling->drawing.sun, content->sun, sizeof(content->sun));
 	sampler_grid(&sampling->grid, shape->low_m, shape->high_m, content->grid_points,
 		     content->face_px, options->below_ground);
+	sampler_add_first_view(&sampling->grid, content, shape->low_m, shape->high_m);
 	if (content->budget_bytes > 0)
 		set_choices(&sampling->grid, content);
 	sampling->key = make_key(sampling, mesh_key, options->master);
@@ -515,16 +536,15 @@ static double median_gap(double *times_s, uint32_t count)
 
 static int look_at_points(struct sampler_progress *out, struct samples_store *store)
 {
-	const uint32_t *count = out->grid.count;
 	double *times_s = calloc(out->point_count, sizeof(*times_s));
 
 	if (!times_s)
 		return -ENOMEM;
 	for (uint32_t n = 0; n < out->point_count; n++) {
-		uint32_t point[3] = { n % count[0], n / count[0] % count[1],
-				      n / count[0] / count[1] };
+		uint32_t point[3];
 		struct stat file;
 
+		sample_grid_point(&out->grid, n, point);
 		if (!samples_store_has(store, point) || samples_store_stat(store, point, &file) < 0)
 			continue;
 		out->done_bytes += (uint64_t)file.st_size;
@@ -552,7 +572,7 @@ int sampler_look(struct sampler_progress *out, struct scans *scans,
 	if (rc < 0)
 		return rc;
 	out->grid = sampling.grid;
-	out->point_count = out->grid.count[0] * out->grid.count[1] * out->grid.count[2];
+	out->point_count = sample_grid_points(&out->grid);
 	snprintf(path, sizeof(path), "%s/.work/samples/grid", sampling.content->folder);
 	if (access(path, R_OK) < 0 || samples_store_look(&store, sampling.content->folder) < 0)
 		return 0; /* nothing was sampled, or it is done again */

@@ -24,6 +24,9 @@ struct sampler_options {
  * SAMPLE_TILE_PX << n. */
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground);
+/* Adds a vantage point where every visit begins: as temple.ini says, or by the model's box. */
+void sampler_add_first_view(struct sample_grid *grid, const struct content *content,
+			    const float low_m[3], const float high_m[3]);
 /* Returns how many levels a face of that resolution has; see sampler_grid. */
 uint32_t sampler_levels(uint32_t face_px);
 /* Sets out to the position of a point, metres. */

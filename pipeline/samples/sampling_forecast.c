@@ -94,16 +94,15 @@ void sampling_forecast(struct sampling_forecast *out, const struct sample_grid *
 	uint32_t side = 1u << (grid->level_count - 1);
 	double area = 0, spacing, share = 0;
 
-	*out = (struct sampling_forecast){ .point_count = grid->count[0] * grid->count[1] *
-							  grid->count[2] };
+	*out = (struct sampling_forecast){ .point_count = sample_grid_points(grid) };
 	for (int k = 0; k < 3; k++)
 		area += 2.0 * (high_m[k] - low_m[k]) * (high_m[(k + 1) % 3] - low_m[(k + 1) % 3]);
 	spacing = sqrt(area / place_count) / widening;
 	for (uint32_t n = 0; n < out->point_count; n++) {
-		uint32_t point[3] = { n % grid->count[0], n / grid->count[0] % grid->count[1],
-				      n / grid->count[0] / grid->count[1] };
+		uint32_t point[3];
 		float at[3];
 
+		sample_grid_point(grid, n, point);
 		memset(cells, 0, sizeof(cells));
 		sampler_point(at, grid, point);
 		for (uint32_t p = 0; p < place_count; p++)

@@ -109,13 +109,13 @@ static int take(struct stand *stand, const float point_m[3])
 	int rc;
 
 	sight_look(face_renderer_sight(stand->renderer), point_m, 0);
-	rc = face_renderer_take(stand->renderer, &stand->shot, point_m, 0);
+	rc = face_renderer_take(stand->renderer, &stand->shot, point_m, 0, NULL);
 	stand->seconds = INFINITY;
 	for (int batch = 0; batch < BATCHES; batch++) {
 		double start = processor_s();
 
 		for (int i = 0; rc == 0 && i < REPEATS; i++)
-			rc = face_renderer_take(stand->renderer, &stand->shot, point_m, 0);
+			rc = face_renderer_take(stand->renderer, &stand->shot, point_m, 0, NULL);
 		stand->seconds = fmin(stand->seconds, (processor_s() - start) / REPEATS);
 	}
 	return rc;
@@ -129,7 +129,7 @@ static int measure(struct sampling_trial *out, const struct face_renderer_option
 	int rc = stand_init(&few, *options, FEW);
 
 	if (rc == 0)
-		rc = face_renderer_take(few.renderer, &few.shot, far_m, 0);
+		rc = face_renderer_take(few.renderer, &few.shot, far_m, 0, NULL);
 	out->start_s = processor_s();
 	if (rc == 0)
 		rc = take(&few, far_m);

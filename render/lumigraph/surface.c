@@ -284,22 +284,14 @@ static void find_uniforms(struct surface_program *p)
 
 static void set_constants(char *out, size_t bytes, const struct tiles *tiles, int faces)
 {
-	const float atlas_px = (float)tiles->atlas_px;
+	char of_tiles[TILES_CONSTANTS_BYTES];
+	tiles_constants(of_tiles, tiles);
 	snprintf(out, bytes,
-		 "#define FACES %d\n"
-		 "#define CELLS %d.0\n"
-		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
-		 "#define IMAGE %.9f\n" /* sides within a slot, as shares of the atlas */
-		 "#define APRON %.9f\n"
-		 "#define TILE %.9f\n"
-		 "#define MIDDLE %d.0\n"
+		 "%s#define FACES %d\n"
 		 "#define OWN_SHARE 0.05\n"
 		 /* penalty for an image that differs from the patch's own colour */
 		 "#define DOUBT 20.0\n",
-		 faces, AIM_CELLS, (int)tiles->faces_across * TILES_CELLS,
-		 (int)tiles->face_rows * TILES_CELLS, (double)(SAMPLE_IMAGE_PX / atlas_px),
-		 (double)(SAMPLE_APRON_PX / atlas_px), (double)(SAMPLE_TILE_PX / atlas_px),
-		 tiles->slots_before);
+		 of_tiles, faces);
 }
 
 const char *const surface_attributes[] = { "a_position", "a_normal", "a_colour", "a_base", NULL };

@@ -2,6 +2,7 @@
 #include "render/lumigraph/tiles.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,6 +103,22 @@ void tiles_clear(struct tiles *tiles)
 	map_clear(&tiles->face_of);
 	map_clear(&tiles->declined);
 	tiles->key_count = 0;
+}
+
+void tiles_constants(char out[TILES_CONSTANTS_BYTES], const struct tiles *tiles)
+{
+	const float atlas_px = (float)tiles->atlas_px;
+	snprintf(out, TILES_CONSTANTS_BYTES,
+		 "#define CELLS %d.0\n"
+		 "#define CELL_GRID vec2(%d.0, %d.0)\n"
+		 "#define IMAGE %.9f\n"
+		 "#define APRON %.9f\n"
+		 "#define TILE %.9f\n"
+		 "#define MIDDLE %d.0\n",
+		 TILES_CELLS, (int)tiles->faces_across * TILES_CELLS,
+		 (int)tiles->face_rows * TILES_CELLS, (double)(SAMPLE_IMAGE_PX / atlas_px),
+		 (double)(SAMPLE_APRON_PX / atlas_px), (double)(SAMPLE_TILE_PX / atlas_px),
+		 tiles->slots_before);
 }
 
 void tiles_begin(struct tiles *tiles)

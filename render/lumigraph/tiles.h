@@ -17,6 +17,7 @@ enum {
 	TILES_CELLS = AIM_CELLS, /* cells per side; as many as tiles of the finest level */
 	TILES_FACES_MAX = 64,
 	TILES_FADE_MS = 250,
+	TILES_CONSTANTS_BYTES = 256,
 };
 
 struct tiles_face {
@@ -37,6 +38,7 @@ struct tiles {
 	int slots_before;           /* slots per side at negative coordinates; 0 with highp */
 	uint32_t slot_count;
 	uint32_t faces_across, face_rows, face_count; /* face slots */
+	uint32_t version; /* changes with every tile that comes or goes */
 	/* Private. */
 	uint64_t *slot_name; /* packed tile name + 1; 0: free. Owned, like all below. */
 	uint32_t *slot_stamp;
@@ -45,7 +47,7 @@ struct tiles {
 	uint32_t season;
 	struct map declined; /* tiles that came and went within a season, or found no room */
 	struct map slot_of, face_of;
-	uint32_t stamp, version;
+	uint32_t stamp;
 	face_key *keys; /* the faces in use, without gaps */
 	uint32_t key_count;
 };
@@ -58,6 +60,11 @@ must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t f
 /* Frees everything; zeroed is fine. */
 void tiles_finish(struct tiles *tiles);
 void tiles_clear(struct tiles *tiles); /* Drops all tiles and faces and keeps the textures. */
+
+/* Writes the definitions with which a shader looks up a tile: CELLS a side of a face; CELL_GRID,
+ * the cells of the indirection texture; IMAGE, APRON and TILE, sides within a slot, as shares of
+ * the atlas; MIDDLE, slots before coordinate 0. */
+void tiles_constants(char out[TILES_CONSTANTS_BYTES], const struct tiles *tiles);
 
 /* Starts a new round of use: what is not touched from now on may be dropped. */
 void tiles_begin(struct tiles *tiles);

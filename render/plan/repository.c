@@ -114,11 +114,15 @@ void repository_finish(struct repository *repository)
 	memset(repository, 0, sizeof(*repository));
 }
 
+static uint32_t grid_points(const struct samples_page *grid)
+{
+	return (uint32_t)grid->count[0] * grid->count[1] * grid->count[2];
+}
+
 /* Every brick must refer to an existing child of the page; otherwise it could not be fetched. */
 static bool bricks_are_sane(const struct repository *r)
 {
-	uint32_t bricks = r->grid.bricks[0] * r->grid.bricks[1] * r->grid.bricks[2];
-	for (uint32_t i = 0; i < bricks; i++)
+	for (uint32_t i = 0; i < samples_page_bricks(&r->grid); i++)
 		if (r->grid.brick_child[i] != SAMPLE_NONE &&
 		    r->grid.brick_child[i] >= r->page.child_count)
 			return false;
@@ -153,7 +157,7 @@ int repository_open(struct repository *repository, struct hash hash, struct byte
 		repository_finish(r);
 		return rc;
 	}
-	r->point_count = (uint32_t)r->grid.count[0] * r->grid.count[1] * r->grid.count[2];
+	r->point_count = grid_points(&r->grid) + r->grid.vantage_count;
 	r->ready = true;
 	return 0;
 }
@@ -225,6 +229,11 @@ int repository_give_face(struct repository *repository, face_key key, struct byt
 void repository_point_m(const struct repository *repository, uint32_t point, float out[3])
 {
 	const struct samples_page *grid = &repository->grid;
+	const uint32_t on_grid = grid_points(grid);
+	if (point >= on_grid) {
+		memcpy(out, grid->vantage_m[point - on_grid], sizeof(grid->vantage_m[0]));
+		return;
+	}
 	uint32_t at[3] = { point % grid->count[0], point / grid->count[0] % grid->count[1],
 			   point / grid->count[0] / grid->count[1] };
 	for (int i = 0; i < 3; i++)
@@ -235,6 +244,11 @@ void repository_point_m(const struct repository *repository, uint32_t point, flo
 static uint32_t brick_of(const struct repository *r, uint32_t point, uint32_t *in_brick)
 {
 	const struct samples_page *grid = &r->grid;
+	const uint32_t on_grid = grid_points(grid);
+	if (point >= on_grid) {
+		*in_brick = point - on_grid;
+		return grid->brick_child[samples_page_bricks(grid) - 1];
+	}
 	uint32_t x = point % grid->count[0], y = point / grid->count[0] % grid->count[1];
 	uint32_t z = point / grid->count[0] / grid->count[1];
 	*in_brick = (z % BRICK_SIDE * BRICK_SIDE + y % BRICK_SIDE) * BRICK_SIDE + x % BRICK_SIDE;

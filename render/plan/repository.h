@@ -8,7 +8,8 @@
 #include "format/samples.h"
 
 /* A face_key is a face of a sampling point: point * CUBE_FACES + face, with point = (z * count_y +
- * y) * count_x + x. A tile is named by the face's key, level, row and column. */
+ * y) * count_x + x; vantage points come after those of the grid. A tile is named by the face's key,
+ * level, row and column. */
 typedef uint32_t face_key;
 struct tile_name {
 	face_key face;
@@ -29,7 +30,7 @@ enum repository_state {
 struct repository {
 	bool ready; /* the samples page has arrived */
 	struct samples_page grid;
-	uint32_t point_count;
+	uint32_t point_count; /* of the grid, and vantage points */
 	/* Private. */
 	struct page page; /* the samples page; page_bytes holds its bytes */
 	uint8_t *page_bytes;

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "geometry/vec.h"
 #include "render/scene/scene_around.h"
+#include "render/scene/scene_backdrop.h"
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_plan.h"
 #include "render/scene/scene_scenery.h"
@@ -233,6 +234,8 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 	};
 	draw_pieces(scene, &frame);
 	scene_draw_stream(scene, &frame);
+	if (!shares)
+		scene_draw_backdrop(scene, view);
 	scene_draw_scenery(scene, &frame);
 }
 
@@ -270,8 +273,9 @@ static float count_share(struct scene *scene)
 static bool is_busy(const struct scene *scene)
 {
 	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
-	       scene->depth_is_stale || stream_growth_moves(&scene->stream.growth) ||
-	       pool_busy(scene->pool) > 0 || scene_scenery_waits(scene);
+	       scene->depth_is_stale || scene->backdrop.moves ||
+	       stream_growth_moves(&scene->stream.growth) || pool_busy(scene->pool) > 0 ||
+	       scene_scenery_waits(scene);
 }
 
 static bool view_changed(const struct scene *scene, const struct view *view)
@@ -327,6 +331,7 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	scene_plan_pieces(scene, moved ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
 				       : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, passed);
+	scene_step_backdrop(scene, passed);
 	if (moved && counted)
 		/* beside the picture one further pass per frame is enough */
 		scene->depth_is_stale = true;

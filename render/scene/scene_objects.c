@@ -131,6 +131,8 @@ static void forget(struct scene *scene)
 	scene_drop_scenery(scene);
 	solid_finish(&scene->solid);
 	repository_finish(&scene->repository);
+	scene->backdrop.share = 0;
+	scene->backdrop.wanted = false;
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
 	scene->counted_count = scene->want_count = 0;
@@ -151,6 +153,7 @@ void scene_destroy(struct scene *scene)
 	enlargement_finish(&scene->enlargement);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);
+	backdrop_finish(&scene->backdrop.picture);
 	scenery_picture_finish(&scene->scenery.picture);
 	depth_finish(&scene->depth);
 	tiles_finish(&scene->tiles);

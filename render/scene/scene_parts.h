@@ -5,6 +5,7 @@
 #include "base/map.h"
 #include "format/hierarchy.h"
 #include "render/lumigraph/accumulation.h"
+#include "render/lumigraph/backdrop.h"
 #include "render/lumigraph/depth.h"
 #include "render/lumigraph/enlargement.h"
 #include "render/lumigraph/outline.h"
@@ -79,6 +80,16 @@ struct scene_around {
 	uint64_t cut;  /* state of the cut when it was begun, or when the last one was; 0: never */
 };
 
+/* The images of a vantage point, shown until the mesh is here (scene_backdrop.h). */
+struct scene_backdrop {
+	struct backdrop picture;
+	int point;        /* in the repository; valid if share > 0 or it is wanted */
+	bool wanted;      /* the eye is there, and the mesh is not here yet */
+	float share;      /* 0..1, of the backdrop in the picture */
+	bool moves;       /* the picture changes */
+	uint32_t version; /* of the tiles in it */
+};
+
 /* What stands beside the scan. */
 struct scene_scenery {
 	struct scenery content;
@@ -135,6 +146,7 @@ struct scene {
 	uint32_t *group_priority; /* used while the wants are listed; owned */
 	struct repository repository;
 	struct scene_stream stream;
+	struct scene_backdrop backdrop;
 	struct scene_scenery scenery;
 	struct solid solid; /* of where an eye may be; without nodes: not here */
 
@@ -170,6 +182,7 @@ struct scene {
 	float image_share;
 	struct message_want *wants; /* owned */
 	uint32_t want_count, want_room;
+	bool groups_are_wanted;
 	bool wants_are_stale; /* objects arrived since they were listed */
 	uint32_t plan_cursor;
 	/* What the last frame marked: */

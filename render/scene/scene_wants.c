@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "geometry/vec.h"
 #include "render/plan/plan_quality.h"
+#include "render/scene/scene_backdrop.h"
 #include "render/scene/scene_labels.h"
 #include "render/scene/scene_objects.h"
 #include "render/scene/scene_stream.h"
@@ -116,6 +117,7 @@ static void want_group(struct scene *scene, uint32_t group, uint32_t priority)
 				      .offset = scene->group_offset[group],
 				      .size = scene->groups[group].size };
 	want(scene, OBJECT_GROUP, group, &place, priority);
+	scene->groups_are_wanted = true;
 }
 
 /* Wants the groups that take the stream's place, all as one: what they add is what the stream still
@@ -137,6 +139,8 @@ static void want_first_cut(struct scene *scene)
 static void want_groups(struct scene *scene)
 {
 	const struct cut *cut = &scene->cut;
+	if (scene_awaits_backdrop(scene))
+		return;
 	if (scene->stream.growth.decoder)
 		want_first_cut(scene);
 	else if (!scene->geometry.loaded[0])
@@ -305,9 +309,37 @@ static uint32_t gain_priority(const struct scene *scene, const struct gain *gain
 					 : plan_priority(gain->pixels, bytes + BYTES_BEHIND_PAGE);
 }
 
-static void want_images(struct scene *scene)
+/* Adds the tiles, from two levels up to the finest that is of use, of a part of the picture. */
+static void add_look(const struct scene *scene, struct gains *gains,
+		     const struct backdrop_look *look, float pixels)
 {
-	struct gains gains = { 0 };
+	const struct plan_want w = { .face = look->face,
+				     .level = look->level,
+				     .area = { look->u, look->v, look->u, look->v } };
+	int before = tiles_level_at(&scene->tiles, look->face, look->u, look->v);
+	int level = look->level > COARSER_FIRST ? look->level - COARSER_FIRST : 0;
+	if (repository_face(&scene->repository, look->face, NULL, NULL) != REPOSITORY_READY) {
+		add_want(scene, gains, &w, pixels * scene_backdrop_worth(scene, look->level, -1),
+			 false);
+		return;
+	}
+	for (level = level > before ? level : before + 1; level <= look->level; level++) {
+		add_level(scene, gains, &w, (uint32_t)level,
+			  pixels * scene_backdrop_worth(scene, level, before));
+		before = level;
+	}
+}
+
+static void add_backdrop(const struct scene *scene, struct gains *gains)
+{
+	struct backdrop_look looks[BACKDROP_LOOKS];
+	const uint32_t count = scene_backdrop_looks(scene, looks);
+	for (uint32_t i = 0; i < count; i++)
+		add_look(scene, gains, &looks[i], scene->view.picture_px / BACKDROP_LOOKS);
+}
+
+static void add_pieces(const struct scene *scene, struct gains *gains)
+{
 	for (uint32_t i = 0; i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		const struct piece_state *state =
@@ -315,19 +347,41 @@ static void want_images(struct scene *scene)
 		const struct plan_choice *choice = &state->choice;
 		float pixels = state->counted ? state->seen_px : v->pixels / 8;
 		for (uint32_t k = 0; k < choice->want_count && pixels > 0; k++)
-			add_want(scene, &gains, &choice->want[k], choice->want[k].gain * pixels,
+			add_want(scene, gains, &choice->want[k], choice->want[k].gain * pixels,
 				 choice->entry_count == 0);
 	}
-	for (uint32_t i = 0; i < gains.count; i++) {
+}
+
+/* Returns whether anything is wanted. base is added to each priority. */
+static bool want_gains(struct scene *scene, struct gains *gains, uint32_t base)
+{
+	bool any = false;
+	for (uint32_t i = 0; i < gains->count; i++) {
 		struct message_want place;
-		if (!place_gain(scene, &gains.list[i], &place))
+		if (!place_gain(scene, &gains->list[i], &place))
 			continue;
-		uint32_t priority = gain_priority(scene, &gains.list[i], place.size);
-		if (priority > 0)
-			want(scene, gains.list[i].kind, gains.list[i].id, &place, priority);
+		uint32_t priority = gain_priority(scene, &gains->list[i], place.size);
+		if (priority == 0)
+			continue;
+		want(scene, gains->list[i].kind, gains->list[i].id, &place, base + priority);
+		any = true;
 	}
-	free(gains.list);
-	map_finish(&gains.of);
+	free(gains->list);
+	map_finish(&gains->of);
+	*gains = (struct gains){ 0 };
+	return any;
+}
+
+/* The backdrop alone at first: which other images the mesh needs is known better when there is
+ * one. */
+static void want_images(struct scene *scene)
+{
+	struct gains gains = { 0 };
+	add_backdrop(scene, &gains);
+	if (want_gains(scene, &gains, FIRST_PRIORITY))
+		return;
+	add_pieces(scene, &gains);
+	(void)want_gains(scene, &gains, 0);
 }
 
 /* ---- the list */
@@ -391,6 +445,7 @@ void scene_list_wants(struct scene *scene)
 {
 	scene->wants_are_stale = false;
 	scene->want_count = 0;
+	scene->groups_are_wanted = false;
 	if (!scene->has_root) {
 		const struct message_want place = { .hash = scene->root_hash,
 						    .size = scene->root_bytes };

@@ -116,8 +116,15 @@ static void judge(struct bench *bench)
 			bench->db_ms[i] = now_ms(bench);
 			bench->db_bytes[i] = bench->stage.bytes + bench->start_bytes;
 		}
-	fprintf(stderr, "%8lld ms %8.0f KB %6.2f dB\n", (long long)now_ms(bench),
-		(double)(bench->stage.bytes + bench->start_bytes) / 1000, db);
+	const uint64_t *of = bench->stage.bytes_of;
+
+	fprintf(stderr,
+		"%8lld ms %8.0f KB %6.2f dB; KB of the stream %.0f, groups %.0f, bricks %.0f, "
+		"faces %.0f, tiles %.0f\n",
+		(long long)now_ms(bench), (double)(bench->stage.bytes + bench->start_bytes) / 1000,
+		db, (double)(of[OBJECT_STREAM] + of[OBJECT_BLOCK]) / 1000,
+		(double)of[OBJECT_GROUP] / 1000, (double)of[OBJECT_BRICK] / 1000,
+		(double)of[OBJECT_FACE] / 1000, (double)of[OBJECT_TILE] / 1000);
 	free(rgba);
 }
 

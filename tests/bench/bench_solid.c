@@ -13,7 +13,7 @@
 #include "geometry/tour_path.h"
 #include "pipeline/import/import.h"
 #include "pipeline/release/solid_grid.h"
-#include "pipeline/release/start_view.h"
+#include "pipeline/content/start_view.h"
 #include "tests/app/view/random_hand.h"
 #include "tests/bench/surface_error.h"
 

@@ -13,6 +13,8 @@
 #include "base/clock.h"
 #include "format/picture.h"
 #include "geometry/vec.h"
+#include "render/scene/scene_objects.h"
+#include "render/scene/scene_parts.h"
 
 /* ---- clock: the linker wraps base/clock's in these (Makefile) */
 
@@ -194,6 +196,10 @@ static void land(struct stage *stage, const struct message_want *want)
 	if (rc < 0)
 		stage_die(release_reader_why(stage->reader), rc);
 	if (!was_had(stage, want->hash)) {
+		const struct object *object = scene_object(stage->scene, want->hash);
+
+		if (object)
+			stage->bytes_of[object->kind] += bytes.size + STAGE_OBJECT_OVERHEAD;
 		stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
 		stage->objects++;
 		stage_must(map_set(&stage->had, hash_key(want->hash), 1), "memory");

@@ -14,6 +14,7 @@
 enum {
 	STAGE_IN_FLIGHT = 64,
 	STAGE_VIEWS_MAX = 1000,
+	STAGE_KINDS = 16,           /* at least as many as of enum object_kind */
 	STAGE_OBJECT_OVERHEAD = 40, /* bytes of a range's headers, beside its object's */
 };
 
@@ -52,8 +53,9 @@ struct stage {
 	struct map had;          /* by hash: what a cache would hold */
 	struct map asked;        /* by hash: bytes sent for of what is not there yet */
 	uint64_t bytes, objects; /* that came for the first time, with what their transport adds */
-	int64_t work_us;         /* of this thread, for the last frame */
-	int64_t wall_us;         /* of the machine's clock, for the last frame */
+	uint64_t bytes_of[STAGE_KINDS]; /* of these, by enum object_kind */
+	int64_t work_us;                /* of this thread, for the last frame */
+	int64_t wall_us;                /* of the machine's clock, for the last frame */
 	/* With work_clock: what the last frame took. The drawing thread's processor time, and its
 	 * share of that of the driver's threads and of decoding, which run beside it. */
 	int64_t spent_us;

@@ -59,6 +59,40 @@ static int decode_face(struct bytes payload)
 	return face_page_decode(&face, payload);
 }
 
+static void keeps_vantage_points(void **state)
+{
+	struct samples_page page = a_page(), back;
+	struct bytes wire;
+	struct buffer out;
+
+	(void)state;
+	page.vantage_count = 2;
+	page.vantage_m[1][0] = 4.5f;
+	children[4] = 3;
+	buffer_init(&out, 1000);
+	samples_page_encode(&out, &page);
+	wire = buffer_bytes(&out);
+	CHECK(samples_page_bricks(&page) == 5);
+	CHECK(samples_page_decode(&back, wire) == 0);
+	CHECK(back.vantage_count == 2 && back.vantage_m[1][0] == 4.5f && back.brick_child[4] == 3);
+	samples_page_finish(&back);
+	/* Without its end it is a page without vantage points; between the two it is none. */
+	for (size_t less = 1; less < 25; less++) {
+		const int rc = decode_samples((struct bytes){ wire.data, wire.size - less });
+
+		CHECK(rc == -EBADMSG);
+	}
+	CHECK(decode_samples((struct bytes){ wire.data, wire.size - 25 }) == 0);
+	out.data[wire.size - 25] = SAMPLE_VANTAGES_MAX + 1;
+	CHECK(decode_samples(wire) == -EBADMSG);
+	out.data[wire.size - 25] = 0;
+	CHECK(decode_samples(wire) == -EBADMSG);
+	out.data[wire.size - 25] = 2;
+	memcpy(&out.data[wire.size - 4], "\0\0\xc0\x7f", 4); /* not a number */
+	CHECK(decode_samples(wire) == -EBADMSG);
+	buffer_finish(&out);
+}
+
 static void keeps_the_samples_page(void **state)
 {
 	struct samples_page page = a_page(), back;
@@ -201,6 +235,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(keeps_the_samples_page),
+		cmocka_unit_test(keeps_vantage_points),
 		cmocka_unit_test(refuses_impossible_grids),
 		cmocka_unit_test(keeps_a_brick_and_errs_on_the_safe_side),
 		cmocka_unit_test(keeps_a_face),

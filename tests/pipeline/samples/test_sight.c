@@ -162,7 +162,7 @@ static uint32_t take(struct boxes *boxes, const float point_m[3], int face, stru
 	boxes->loads = 0;
 	CHECK(face_renderer_create(&renderer, &options) == 0);
 	sight_look(face_renderer_sight(renderer), point_m, 0);
-	CHECK(face_renderer_take(renderer, shot, point_m, face) == 0);
+	CHECK(face_renderer_take(renderer, shot, point_m, face, NULL) == 0);
 	face_renderer_destroy(renderer);
 	return boxes->loads;
 }

@@ -1,4 +1,4 @@
-#include "pipeline/release/start_view.h"
+#include "pipeline/content/start_view.h"
 
 #include <math.h>
 #include <stdbool.h>

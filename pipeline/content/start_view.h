@@ -1,7 +1,7 @@
 /* The first view if temple.ini does not give one: from a corner in front (-y), slightly above, as
  * near as possible with the whole box in the picture. Pure. */
-#ifndef GOPURA_PIPELINE_RELEASE_START_VIEW_H
-#define GOPURA_PIPELINE_RELEASE_START_VIEW_H
+#ifndef GOPURA_PIPELINE_CONTENT_START_VIEW_H
+#define GOPURA_PIPELINE_CONTENT_START_VIEW_H
 
 /* The picture that the box must fit into, with a margin of a twentieth on each side: the kiosk's
  * field of view, on a panel that is not necessarily wide. */

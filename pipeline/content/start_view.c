@@ -1,5 +1,5 @@
 /* Computes the default first view of a model from its bounding box. */
-#include "pipeline/release/start_view.h"
+#include "pipeline/content/start_view.h"
 
 #include <math.h>
 
