@@ -33,6 +33,8 @@ struct little_release {
 	uint32_t root_bytes;
 	uint32_t points; /* a side */
 	uint64_t given_bytes, given_tiles;
+	bool has_vantage;
+	float vantage_m[3];
 };
 
 static const float little_boxes[LITTLE_BOXES][2][3] = {
@@ -256,8 +258,8 @@ static void little_point(const struct little_release *r, uint32_t x, uint32_t y,
 	out[2] = 1.5f + 4 * (float)z;
 }
 
-static bool little_tile(const float point[3], int face, uint32_t level, uint32_t row,
-			uint32_t column, uint8_t *rgb)
+static bool little_tile(const float point[3], const float background[3], int face, uint32_t level,
+			uint32_t row, uint32_t column, uint8_t *rgb)
 {
 	float side = (float)(SAMPLE_TILE_PX << level);
 	bool shows = false;
@@ -265,7 +267,8 @@ static bool little_tile(const float point[3], int face, uint32_t level, uint32_t
 		for (int x = 0; x < SAMPLE_IMAGE_PX; x++) {
 			float px = (float)(column * SAMPLE_TILE_PX) + (float)(x - SAMPLE_APRON_PX);
 			float py = (float)(row * SAMPLE_TILE_PX) + (float)(y - SAMPLE_APRON_PX);
-			float direction[3], colour[3] = { 150, 140, 120 };
+			float direction[3], colour[3];
+			memcpy(colour, background, sizeof(colour));
 			cube_direction(direction, face, 2 * (px + 0.5f) / side - 1,
 				       1 - 2 * (py + 0.5f) / side);
 			shows |= little_cast(point, direction, colour);
@@ -276,8 +279,8 @@ static bool little_tile(const float point[3], int face, uint32_t level, uint32_t
 	return shows;
 }
 
-static bool little_face(struct little_release *r, const float point[3], int face,
-			struct page_child *out)
+static bool little_face(struct little_release *r, const float point[3], const float background[3],
+			int face, struct page_child *out)
 {
 	static uint8_t rgb[SAMPLE_IMAGE_PX * SAMPLE_IMAGE_PX * 3];
 	struct page_child children[FACE_TILES_MAX];
@@ -289,7 +292,7 @@ static bool little_face(struct little_release *r, const float point[3], int face
 	for (uint32_t level = 0; level < LITTLE_LEVELS; level++) {
 		for (uint32_t at = 0; at < 1u << (2 * level); at++) {
 			uint32_t row = at >> level, column = at & ((1u << level) - 1);
-			if (!little_tile(point, face, level, row, column, rgb))
+			if (!little_tile(point, background, face, level, row, column, rgb))
 				continue;
 			CHECK(tile_encode(&bytes, rgb, SAMPLE_IMAGE_PX, 95, TILE_THOROUGH) == 0);
 			page.tile_child[face_tile_index(level, row, column)] = count;
@@ -303,12 +306,38 @@ static bool little_face(struct little_release *r, const float point[3], int face
 	return count > 0;
 }
 
-static struct page_child little_samples(struct little_release *r)
+/* The brick of the vantage point at r->vantage_m. */
+static struct page_child little_vantage(struct little_release *r)
 {
 	static struct brick_page brick;
-	struct page_child children[BRICK_POINTS * CUBE_FACES], brick_child;
+	static const float sky[3] = { 120, 150, 180 };
+	struct page_child children[CUBE_FACES], page;
 	struct buffer payload;
-	uint32_t count = 0, zero = 0;
+	uint32_t count = 0;
+	buffer_init(&payload, PAGE_BYTES_MAX);
+	memset(&brick, 0, sizeof(brick));
+	memset(brick.face_child, 0xff, sizeof(brick.face_child));
+	for (int face = 0; face < CUBE_FACES; face++) {
+		if (!little_face(r, r->vantage_m, sky, face, &children[count]))
+			continue;
+		brick.face_child[0][face] = count++;
+		brick.coverage[0][face] = 0xffff;
+		brick.near_m[0][face] = 0.5f;
+		brick.far_m[0][face] = 30;
+	}
+	brick_page_encode(&payload, &brick);
+	page = little_page(r, PAGE_BRICK, children, count, &payload);
+	buffer_finish(&payload);
+	return page;
+}
+
+static struct page_child little_samples(struct little_release *r)
+{
+	static const float filled[3] = { 150, 140, 120 };
+	static struct brick_page brick;
+	struct page_child children[BRICK_POINTS * CUBE_FACES], bricks[2];
+	struct buffer payload;
+	uint32_t count = 0, numbers[2] = { 0, 1 };
 	buffer_init(&payload, PAGE_BYTES_MAX);
 	memset(&brick, 0, sizeof(brick));
 	memset(brick.face_child, 0xff, sizeof(brick.face_child));
@@ -319,7 +348,7 @@ static struct page_child little_samples(struct little_release *r)
 		little_point(r, x, y, z, point);
 		uint32_t at = (z * BRICK_SIDE + y) * BRICK_SIDE + x;
 		for (int face = 0; face < CUBE_FACES && !little_is_inside(point); face++) {
-			if (!little_face(r, point, face, &children[count]))
+			if (!little_face(r, point, filled, face, &children[count]))
 				continue;
 			brick.face_child[at][face] = count++;
 			brick.coverage[at][face] = 0xffff;
@@ -328,31 +357,40 @@ static struct page_child little_samples(struct little_release *r)
 		}
 	}
 	brick_page_encode(&payload, &brick);
-	brick_child = little_page(r, PAGE_BRICK, children, count, &payload);
+	bricks[0] = little_page(r, PAGE_BRICK, children, count, &payload);
 	struct samples_page samples = { .count = { (uint8_t)r->points, (uint8_t)r->points, 2 },
 					.level_count = LITTLE_LEVELS,
 					.bricks = { 1, 1, 1 },
-					.brick_child = &zero };
+					.brick_child = numbers,
+					.vantage_count = r->has_vantage };
 	float next[3];
 	little_point(r, 0, 0, 0, samples.origin_m);
 	little_point(r, 1, 1, 1, next);
 	for (int i = 0; i < 3; i++)
 		samples.spacing_m[i] = next[i] - samples.origin_m[i];
+	memcpy(samples.vantage_m[0], r->vantage_m, sizeof(r->vantage_m));
+	if (r->has_vantage)
+		bricks[1] = little_vantage(r);
 	samples_page_encode(&payload, &samples);
-	struct page_child page = little_page(r, PAGE_SAMPLES, &brick_child, 1, &payload);
+	struct page_child page =
+		little_page(r, PAGE_SAMPLES, bricks, r->has_vantage ? 2 : 1, &payload);
 	buffer_finish(&payload);
 	return page;
 }
 
 /* ---- the whole */
 
-/* points: sampling points along x and y, 2 .. BRICK_SIDE; two layers. */
-static inline struct little_release *little_release_make(uint32_t points)
+/* points: sampling points along x and y, 2 .. BRICK_SIDE; two layers. vantage_m: of a vantage
+ * point; NULL: there is none. */
+static inline struct little_release *little_release_from(uint32_t points, const float *vantage_m)
 {
 	struct little_release *r = calloc(1, sizeof(*r));
 	struct page_child children[ROOT_CHILD_COUNT];
 	struct buffer payload;
 	r->points = points;
+	r->has_vantage = vantage_m != NULL;
+	if (vantage_m)
+		memcpy(r->vantage_m, vantage_m, sizeof(r->vantage_m));
 	children[ROOT_CHILD_HIERARCHY] = little_hierarchy(r);
 	children[ROOT_CHILD_SAMPLES] = little_samples(r);
 	children[ROOT_CHILD_INFO] = children[ROOT_CHILD_SAMPLES];
@@ -373,6 +411,11 @@ static inline struct little_release *little_release_make(uint32_t points)
 	r->root_bytes = page.size;
 	buffer_finish(&payload);
 	return r;
+}
+
+static inline struct little_release *little_release_make(uint32_t points)
+{
+	return little_release_from(points, NULL);
 }
 
 static inline void little_release_free(struct little_release *r)
