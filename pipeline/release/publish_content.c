@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "pipeline/content/start_view.h"
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/keys/keys_place.h"
 #include "pipeline/release/publish_budget.h"
@@ -21,7 +22,6 @@
 #include "pipeline/release/publish_stream.h"
 #include "pipeline/release/published.h"
 #include "pipeline/release/release_tuf.h"
-#include "pipeline/content/start_view.h"
 
 /* The target folder and the signing keys. */
 struct destination {

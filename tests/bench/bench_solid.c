@@ -11,9 +11,9 @@
 #include "geometry/foot_way.h"
 #include "geometry/solid_space.h"
 #include "geometry/tour_path.h"
+#include "pipeline/content/start_view.h"
 #include "pipeline/import/import.h"
 #include "pipeline/release/solid_grid.h"
-#include "pipeline/content/start_view.h"
 #include "tests/app/view/random_hand.h"
 #include "tests/bench/surface_error.h"
 

@@ -65,7 +65,7 @@ is_public() {
 	*_private.h | *_parts.h) return 1 ;;
 	pipeline/import/*) names="alignment import_scenery json manifest import import_report mesh mesh_edges mesh_file mesh_places face_list ply sandbox scan_look transform" ;;
 	pipeline/scene/*) names="vrml vrml_text vrml_surface vrml_scenery vrml_views scene_views gltf_views gltf gltf_scenery scenery_maker soup" ;;
-	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import work_lock" ;;
+	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import start_view work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;
 	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
