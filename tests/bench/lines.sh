@@ -5,6 +5,7 @@
 #
 #   LINES="KBIT:RTT[:LOSS[:SWING[:WAIT]]] ..."  the lines: percent lost, seconds of a swing, ms of a turn (default 500)
 #   CONTENT=DIR RELEASE=DIR                     another model than the demo's
+#   VIEWS=FILE                                  whose first line is the view (default: tests/bench/views.txt)
 set -eu
 cd "$(dirname "$0")/../.."
 command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }
@@ -15,7 +16,7 @@ make --no-print-directory all tests benches >/dev/null
 [ -n "${RELEASE:-}" ] || demo/prepare.sh >/dev/null
 rm -rf "$work"
 mkdir -p "$work/truth"
-grep -v '^#' tests/bench/views.txt | head -n 1 >"$work/view.txt"
+grep -v '^#' "${VIEWS:-tests/bench/views.txt}" | head -n 1 >"$work/view.txt"
 build/gopura-content render "$content" --views "$work/view.txt" --size 960x540 --supersample 4 --out "$work/truth" >&2
 trap stop_server EXIT
 GOPURA_LISTEN=0.0.0.0 start_server "$release" "$work/server" 0 10.77.0.1

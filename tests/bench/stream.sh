@@ -4,6 +4,7 @@
 #
 #   LINES="64:100 1000:40"   kbit/s and round trip in ms of each line (default: also 10000:40)
 #   CONTENT=DIR RELEASE=DIR  another model than the demo's
+#   VIEWS=FILE               whose first line is the view (default: tests/bench/views.txt)
 set -eu
 cd "$(dirname "$0")/../.."
 work=build/bench/stream
@@ -11,7 +12,7 @@ content=${CONTENT:-build/demo/content} release=${RELEASE:-build/demo/release}
 make --no-print-directory benches >/dev/null
 [ -n "${RELEASE:-}" ] || demo/prepare.sh >/dev/null
 mkdir -p "$work"
-grep -v '^#' tests/bench/views.txt | head -n 1 >"$work/view.txt"
+grep -v '^#' "${VIEWS:-tests/bench/views.txt}" | head -n 1 >"$work/view.txt"
 build/gopura-content render "$content" --views "$work/view.txt" --size 960x540 --supersample 4 --out "$work/truth" >&2
 : >"$work/rows"
 for line in ${LINES:-64:100 1000:40 10000:40}; do
