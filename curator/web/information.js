@@ -148,13 +148,16 @@ async function setDocuments(of, list) {
   showWhich();
 }
 
+// Nothing can be written on the page before it is here, because it would be lost.
 async function loadPage() {
   showWhich();
+  allowEditing(false);
   const page = await ask("GET", pageAddress());
   tag = page.tag;
   setPage(page.html || "<p><br></p>");
   loadedText = pageText();
-  setDirty(false);
+  allowEditing(may("editor"));
+  edited(); // fields may have been written in meanwhile
 }
 
 // ---- saving

@@ -73,6 +73,7 @@ async function write() {
   await browser.until(`location.pathname === "/information" && document.querySelector("#title")?.value === "Corner of the gallery"`, "the part's texts");
   await browser.click("#caption");
   await browser.type("Here the upper gallery turns to the south.");
+  await browser.until(`document.querySelector("#page").isContentEditable`, "the page");
   await browser.evaluate(`document.querySelector("#page").focus()`);
   await browser.type("Written by a curator in a browser.");
   await browser.key("s", CONTROL, 83);
