@@ -145,8 +145,7 @@ static int start(struct samples_writer *writer, const struct samples_store *stor
 	page->brick_child = malloc((total + 1) * sizeof(*page->brick_child));
 	if (!page->brick_child)
 		return -ENOMEM;
-	memset(page->brick_child, 0xff, total * sizeof(*page->brick_child));
-	page->brick_child[total] = SAMPLE_NONE;
+	memset(page->brick_child, 0xff, (total + 1) * sizeof(*page->brick_child));
 	page->vantage_count = grid->vantage_count;
 	memcpy(page->vantage_m, grid->vantage_m, sizeof(page->vantage_m));
 	writer->brick_index = SAMPLE_NONE;

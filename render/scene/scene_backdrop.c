@@ -52,15 +52,13 @@ static bool lacks_mesh(const struct scene *scene)
 	       scene->dissolve.moving;
 }
 
-uint32_t scene_backdrop_looks(const struct scene *scene, struct backdrop_look looks[BACKDROP_LOOKS])
+static void look_around(struct scene *scene)
 {
 	const struct view *view = &scene->view;
-	if (scene->backdrop.point < 0 || !scene->backdrop.wanted)
-		return 0;
 	for (uint32_t i = 0; i < BACKDROP_LOOKS; i++) {
 		const float x = ((float)(i % LOOKS_ACROSS) + 0.5f) / LOOKS_ACROSS * 2 - 1;
 		const float y = ((float)(i / LOOKS_ACROSS) + 0.5f) / LOOKS_HIGH * 2 - 1;
-		struct backdrop_look *look = &looks[i];
+		struct backdrop_look *look = &scene->backdrop.looks[i];
 		float way[3], depth;
 		vec_copy(way, view->forward);
 		vec_add_scaled(way, way, x * view->tan_x, view->right);
@@ -72,7 +70,7 @@ uint32_t scene_backdrop_looks(const struct scene *scene, struct backdrop_look lo
 		look->level = (uint8_t)plan_level(view->focal_px * depth,
 						  repository_levels(&scene->repository));
 	}
-	return BACKDROP_LOOKS;
+	scene->backdrop.look_count = BACKDROP_LOOKS;
 }
 
 /* As plan_quality, without parallax. */
@@ -104,14 +102,13 @@ float scene_backdrop_worth(const struct scene *scene, int level, int before)
 
 bool scene_awaits_backdrop(const struct scene *scene)
 {
-	struct backdrop_look looks[BACKDROP_LOOKS];
-	const uint32_t count = scene_backdrop_looks(scene, looks);
+	const struct scene_backdrop *backdrop = &scene->backdrop;
 	if (scene->options.mode != SCENE_LUMIGRAPH || clock_now_ms() - scene->opened_ms > AWAIT_MS)
 		return false;
 	if (!scene->repository.ready)
 		return true;
-	for (uint32_t i = 0; i < count; i++) {
-		const struct backdrop_look *look = &looks[i];
+	for (uint32_t i = 0; i < backdrop->look_count; i++) {
+		const struct backdrop_look *look = &backdrop->looks[i];
 		const uint32_t level = look->level > 0 ? look->level - 1u : 0;
 		const enum repository_state state =
 			repository_face(&scene->repository, look->face, NULL, NULL);
@@ -126,11 +123,10 @@ bool scene_awaits_backdrop(const struct scene *scene)
 
 static void touch(struct scene *scene)
 {
-	struct backdrop_look looks[BACKDROP_LOOKS];
-	const uint32_t count = scene_backdrop_looks(scene, looks);
-	for (uint32_t i = 0; i < count; i++)
-		tiles_touch(&scene->tiles, looks[i].face, looks[i].u, looks[i].v, looks[i].u,
-			    looks[i].v);
+	for (uint32_t i = 0; i < scene->backdrop.look_count; i++) {
+		const struct backdrop_look *look = &scene->backdrop.looks[i];
+		tiles_touch(&scene->tiles, look->face, look->u, look->v, look->u, look->v);
+	}
 }
 
 void scene_step_backdrop(struct scene *scene, float passed_ms)
@@ -141,8 +137,10 @@ void scene_step_backdrop(struct scene *scene, float passed_ms)
 	float left;
 	if (point >= 0)
 		backdrop->point = point;
-	backdrop->wanted = point >= 0 && lacks_mesh(scene);
-	left = (backdrop->wanted ? 1 : 0) - backdrop->share;
+	backdrop->look_count = 0;
+	if (point >= 0 && lacks_mesh(scene))
+		look_around(scene);
+	left = (backdrop->look_count > 0 ? 1 : 0) - backdrop->share;
 	backdrop->share += vec_least(vec_most(left, -step), step);
 	backdrop->moves =
 		left != 0 || (backdrop->share > 0 && backdrop->version != scene->tiles.version);

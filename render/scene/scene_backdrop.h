@@ -5,21 +5,8 @@
 
 #include "render/scene/scene_parts.h"
 
-enum { BACKDROP_LOOKS = 32 * 18 };
-
-/* Where a part of the picture is in the images of the point. */
-struct backdrop_look {
-	face_key face;
-	float u, v;
-	uint8_t level; /* as fine as the screen */
-};
-
-/* Decides what is shown, and marks its tiles as in use; after scene_fade_blends. */
+/* Decides what is shown and wanted, and marks its tiles as in use; after scene_fade_blends. */
 void scene_step_backdrop(struct scene *scene, float passed_ms);
-/* Writes the looks of the whole picture, each of as many pixels. Returns their count; 0 where the
- * backdrop is of no use. */
-uint32_t scene_backdrop_looks(const struct scene *scene,
-			      struct backdrop_look looks[BACKDROP_LOOKS]);
 /* Returns what an image of the level is worth to a look, where one of the level before is shown;
  * -1: none. On the scale of plan_worth. */
 float scene_backdrop_worth(const struct scene *scene, int level, int before);

@@ -132,7 +132,7 @@ static void forget(struct scene *scene)
 	solid_finish(&scene->solid);
 	repository_finish(&scene->repository);
 	scene->backdrop.share = 0;
-	scene->backdrop.wanted = false;
+	scene->backdrop.look_count = 0;
 	scene->has_root = scene->has_hierarchy = false;
 	scene->visible_count = scene->leaving_count = 0;
 	scene->counted_count = scene->want_count = 0;

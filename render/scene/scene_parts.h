@@ -80,11 +80,23 @@ struct scene_around {
 	uint64_t cut;  /* state of the cut when it was begun, or when the last one was; 0: never */
 };
 
+enum { BACKDROP_LOOKS = 32 * 18 };
+
+/* Where a part of the picture is in the images of a vantage point. */
+struct backdrop_look {
+	face_key face;
+	float u, v;
+	uint8_t level; /* as fine as the screen */
+};
+
 /* The images of a vantage point, shown until the mesh is here (scene_backdrop.h). */
 struct scene_backdrop {
 	struct backdrop picture;
-	int point;        /* in the repository; valid if share > 0 or it is wanted */
-	bool wanted;      /* the eye is there, and the mesh is not here yet */
+	int point; /* in the repository; valid if share > 0 or it is wanted */
+	/* Of the whole picture, each of as many pixels; none: the eye is elsewhere, or the mesh is
+	 * here, so no image of the point is wanted. */
+	struct backdrop_look looks[BACKDROP_LOOKS];
+	uint32_t look_count;
 	float share;      /* 0..1, of the backdrop in the picture */
 	bool moves;       /* the picture changes */
 	uint32_t version; /* of the tiles in it */

@@ -332,10 +332,10 @@ static void add_look(const struct scene *scene, struct gains *gains,
 
 static void add_backdrop(const struct scene *scene, struct gains *gains)
 {
-	struct backdrop_look looks[BACKDROP_LOOKS];
-	const uint32_t count = scene_backdrop_looks(scene, looks);
-	for (uint32_t i = 0; i < count; i++)
-		add_look(scene, gains, &looks[i], scene->view.picture_px / BACKDROP_LOOKS);
+	const struct scene_backdrop *backdrop = &scene->backdrop;
+	for (uint32_t i = 0; i < backdrop->look_count; i++)
+		add_look(scene, gains, &backdrop->looks[i],
+			 scene->view.picture_px / (float)backdrop->look_count);
 }
 
 static void add_pieces(const struct scene *scene, struct gains *gains)

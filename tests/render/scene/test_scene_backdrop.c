@@ -153,7 +153,7 @@ static void it_goes_when_the_mesh_is_here(void **state)
 	without_mesh = psnr(&stage);
 	settle(&stage, true);
 	CHECK(stage.frame.settled && stage.frame.patches > 0);
-	CHECK(stage.scene->backdrop.share <= 0 && !stage.scene->backdrop.wanted);
+	CHECK(stage.scene->backdrop.share <= 0 && stage.scene->backdrop.look_count == 0);
 	printf("%.1f dB with the mesh\n", psnr(&stage));
 	CHECK(psnr(&stage) > without_mesh - 2);
 	strike_stage(&stage);
