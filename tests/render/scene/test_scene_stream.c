@@ -3,69 +3,15 @@
 #include <unistd.h>
 
 #include "format/picture.h"
-#include "render/display/gl.h"
-#include "render/display/headless.h"
 #include "render/scene/scene_objects.h"
+#include "tests/render/scene/little_stage.h"
 #include "tests/render/scene/little_stream.h"
 
-enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, FRAMES_MAX = 3000 };
-
-static const struct camera usual_camera = {
-	.eye_m = { 10, -12, 5 },
-	.target_m = { 0, 0, 1.5f },
-	.up = { 0, 0, 1 },
-	.fov_deg = 45,
-	.near_m = 0.1f,
-	.far_m = 200,
-	.width_px = WIDTH,
-	.height_px = HEIGHT,
-};
+enum { FRAMES_MAX = 3000 };
 
 static struct little_release *release;
 static struct hash plain_root;
 static uint32_t plain_bytes;
-
-struct stage {
-	struct headless *headless;
-	struct gl_target target;
-	struct scene *scene;
-	struct scene_frame frame;
-	uint8_t seen[4 * PIXELS], before[4 * PIXELS];
-};
-
-static void raise_stage(struct stage *stage, enum scene_mode mode)
-{
-	const struct scene_options options = {
-		.mode = mode,
-		.texture_budget_bytes = 96 << 20,
-		.geometry_budget_bytes = 64 << 20,
-		.triangle_budget = 200000,
-		.patch_error_px = 1,
-		.upload_budget_us = 20000,
-	};
-
-	CHECK(headless_create(&stage->headless) == 0);
-	CHECK(gl_target_create(&stage->target, WIDTH, HEIGHT) == 0);
-	CHECK(scene_create(&stage->scene, &options) == 0);
-	CHECK(scene_open(stage->scene, release->root, release->root_bytes) == 0);
-}
-
-static void strike_stage(struct stage *stage)
-{
-	scene_destroy(stage->scene);
-	gl_target_destroy(&stage->target);
-	CHECK(gl_check("the test") == 0);
-	headless_destroy(stage->headless);
-}
-
-static void draw(struct stage *stage)
-{
-	memcpy(stage->before, stage->seen, sizeof(stage->seen));
-	gl_target_bind(&stage->target);
-	CHECK(scene_dispatch(stage->scene) == 0);
-	scene_draw(stage->scene, &usual_camera, NULL, &stage->frame);
-	CHECK(gl_target_read(&stage->target, stage->seen) == 0);
-}
 
 /* Gives what is wanted most, but no patches before the whole stream: over a line on which patches
  * took longer, it would come first. */
@@ -86,7 +32,7 @@ static void serve(struct stage *stage)
 static void settle(struct stage *stage)
 {
 	for (int i = 0; i < FRAMES_MAX; i++) {
-		draw(stage);
+		draw_stage(stage, &usual_camera);
 		if (stage->frame.settled)
 			return;
 		serve(stage);
@@ -137,13 +83,13 @@ static void the_stream_is_the_first_picture(void **state)
 
 	(void)state;
 	use_root(true, false);
-	raise_stage(&stage, SCENE_POLYGONS);
-	draw(&stage);
+	raise_stage(&stage, release, SCENE_POLYGONS);
+	draw_stage(&stage, &usual_camera);
 	CHECK(stage.frame.stream_triangles == 0 && covered(stage.seen) <= 0);
 	serve(&stage); /* the root page */
-	draw(&stage);
+	draw_stage(&stage, &usual_camera);
 	serve(&stage); /* the stream page */
-	draw(&stage);
+	draw_stage(&stage, &usual_camera);
 	CHECK(stage.frame.stream_triangles > 0 && stage.frame.patches == 0);
 	CHECK(!stage.frame.settled);
 	memcpy(first, stage.seen, sizeof(first));
@@ -163,11 +109,11 @@ static void nothing_pops_until_patches_are_shown(void **state)
 
 	(void)state;
 	use_root(true, false);
-	raise_stage(&stage, SCENE_POLYGONS);
+	raise_stage(&stage, release, SCENE_POLYGONS);
 	for (frames = 0; frames < FRAMES_MAX && !stage.frame.settled; frames++) {
 		const bool first = stage.frame.stream_triangles == 0 && stage.frame.patches == 0;
 
-		draw(&stage);
+		draw_stage(&stage, &usual_camera);
 		if (!first) {
 			const double changed = differing(stage.before, stage.seen);
 
@@ -197,13 +143,13 @@ static void check_settled(enum scene_mode mode, double most)
 	struct message_want wants[8];
 
 	use_root(true, false);
-	raise_stage(&stage, mode);
+	raise_stage(&stage, release, mode);
 	settle(&stage);
 	CHECK(scene_wants(stage.scene, wants, 8) == 0);
 	memcpy(with, stage.seen, sizeof(with));
 	strike_stage(&stage);
 	use_root(false, false);
-	raise_stage(&stage, mode);
+	raise_stage(&stage, release, mode);
 	settle(&stage);
 	if (differing(with, stage.seen) > most)
 		fail_msg("%.2f %% of the pixels differ", 100 * differing(with, stage.seen));
@@ -223,7 +169,7 @@ static void a_damaged_block_is_reported_and_patches_come_all_the_same(void **sta
 
 	(void)state;
 	use_root(true, true);
-	raise_stage(&stage, SCENE_POLYGONS);
+	raise_stage(&stage, release, SCENE_POLYGONS);
 	settle(&stage);
 	CHECK(scene_refused(stage.scene) == 1);
 	CHECK(stage.frame.stream_triangles == 0 && stage.frame.patches > 0);
