@@ -14,6 +14,9 @@
 
 /* Longest time step of the navigator, so that after a delay the eye does not jump. */
 enum { STEP_MOST_MS = 50 };
+/* Frames that take longer are logged, each only if none before took as long: on a display of any
+ * speed this is a handful of lines. */
+enum { SLOW_US = 2000000 };
 
 void frame_init(struct frame *frame, const struct frame_options *options)
 {
@@ -189,6 +192,25 @@ int frame_unseen(struct frame *frame)
 	return 0;
 }
 
+/* Logs where the time of a slow frame went: before the scene, in the scene, in the words, and until
+ * the panel had it, where a driver does what it was told to draw. */
+static void log_slow(struct frame *frame)
+{
+	const int64_t end_us = frame->began_us + frame->spent_us;
+	const double second = 1e6;
+
+	if (frame->spent_us <= (frame->slowest_us > SLOW_US ? frame->slowest_us : SLOW_US))
+		return;
+	frame->slowest_us = frame->spent_us;
+	log_info("app",
+		 "a frame took %.1f s: %.1f before the scene, scene %.1f, words %.1f, panel %.1f",
+		 (double)frame->spent_us / second,
+		 (double)(frame->scene_us - frame->began_us) / second,
+		 (double)(frame->words_us - frame->scene_us) / second,
+		 (double)(frame->drawn_us - frame->words_us) / second,
+		 (double)(end_us - frame->drawn_us) / second);
+}
+
 /* ---- the frame */
 
 static void move_eye(struct frame *frame, int64_t now_ms)
@@ -209,12 +231,15 @@ static int draw(struct frame *frame, int64_t now_ms)
 	int rc;
 
 	display_begin(o->display);
+	frame->scene_us = measured_us(frame);
 	draw_scene(frame);
+	frame->words_us = measured_us(frame);
 	rc = draw_words(frame, now_ms);
 	if (rc == 0)
 		rc = setup_page_draw(o->setup_page, o->quads, frame->pictured, now_ms);
 	if (rc == 0)
 		rc = gl_check("drawing a frame");
+	frame->drawn_us = measured_us(frame);
 	return rc;
 }
 
@@ -243,6 +268,7 @@ int frame_draw(struct frame *frame)
 	if (rc == 0)
 		rc = display_present(o->display);
 	frame->spent_us = measured_us(frame) - frame->began_us;
+	log_slow(frame);
 	frame->pending = shown_by(frame)->frame.moved;
 	frame_note_shown(frame);
 	log_first_picture(frame);

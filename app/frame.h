@@ -42,7 +42,9 @@ struct frame {
 	uint64_t count, late_count; /* frames drawn; those with work_us over FRAME_BUDGET_US */
 	struct governor governor;   /* of the frames of a moving eye */
 	struct gpu_timer timer;
-	int64_t began_us;       /* when the last frame began */
+	/* When the last frame began, and came to the scene, the words, and the end of drawing. */
+	int64_t began_us, scene_us, words_us, drawn_us;
+	int64_t slowest_us;     /* of the slow frames that were logged */
 	int64_t spent_us;       /* what it took until it was handed to the display */
 	bool pending;           /* the eye moved in it, and its time is not noted yet */
 	bool words_move;        /* the overlay still changes */
