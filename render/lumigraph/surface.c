@@ -470,7 +470,7 @@ static void change_cut(struct surface *surface, uint8_t cut)
 		for (int i = 0; i < SURFACE_PROGRAMS; i++) {
 			if (surface->of[tools][i].program)
 				glDeleteProgram(surface->of[tools][i].program);
-			surface->of[tools][i].program = 0;
+			surface->of[tools][i] = (struct surface_program){ 0 };
 		}
 		surface->lacks[tools] = false;
 	}
@@ -478,8 +478,8 @@ static void change_cut(struct surface *surface, uint8_t cut)
 }
 
 /* Returns the program with the active tools; builds it where it is missing. */
-static const struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
-					 int program)
+static struct surface_program *use(struct surface *surface, const struct surface_frame *frame,
+				   int program)
 {
 	const unsigned tools = surface_tools(frame);
 	if (surface->cut != frame->root->cut)
@@ -487,6 +487,13 @@ static const struct surface_program *use(struct surface *surface, const struct s
 	if (!surface->of[tools][program].program && !surface->lacks[tools])
 		surface->lacks[tools] = init_program(surface, tools, program) < 0;
 	return &surface->of[surface->lacks[tools] ? 0 : tools][program];
+}
+
+bool surface_is_new(const struct surface *surface, const struct surface_frame *frame, int program)
+{
+	const unsigned tools = surface_tools(frame);
+	const struct surface_program *p = &surface->of[surface->lacks[tools] ? 0 : tools][program];
+	return !p->program || !p->is_drawn[frame->is_direct];
 }
 
 bool surface_prepare(struct surface *surface, const struct surface_frame *frame)
@@ -502,9 +509,11 @@ bool surface_prepare(struct surface *surface, const struct surface_frame *frame)
 
 void surface_begin(struct surface *surface, const struct surface_frame *frame, int program)
 {
-	const struct surface_program *p = surface->used = use(surface, frame, program);
+	struct surface_program *p = use(surface, frame, program);
 	const struct lattice *lattice = &frame->root->lattice;
 	const float *eye = frame->view->eye_m, *sun = frame->root->sun;
+	surface->used = p;
+	p->is_drawn[frame->is_direct] = true;
 	glUseProgram(p->program);
 	glUniformMatrix4fv(p->clip, 1, GL_FALSE, frame->view->clip);
 	glUniform4f(p->lattice, (float)(lattice->origin_m[0] - eye[0]),

@@ -36,6 +36,7 @@ enum { SURFACE_DEFINES_BYTES = 160 };
 
 struct surface_program {
 	GLuint program;
+	bool is_drawn[2]; /* something was, by surface_frame.is_direct */
 	GLint clip, lattice, sun, eye, face, place, window, base, tune, share, depth, slack, range;
 	struct surface_tool_uniforms tools;
 };
@@ -64,7 +65,9 @@ struct surface_frame {
 	struct surface_fog fog;
 	/* faces have the weight of their blend, whatever they see (the eight corners) */
 	bool even;
-	bool shares; /* draws the share of a pixel that images colour, instead of its colour */
+	bool shares;    /* draws the share of a pixel that images colour, instead of its colour */
+	bool is_direct; /* drawn into the caller's framebuffer, whose format may not be a target's
+			 */
 };
 
 /* Returns the active tools, bits of SURFACE_RAKE, SURFACE_CUT and SURFACE_FOG. */
@@ -104,6 +107,9 @@ int surface_faces(int program);
 /* Builds one of the programs that the tools of the frame still lack. Returns whether there was none
  * left to build, or the driver refused one. */
 bool surface_prepare(struct surface *surface, const struct surface_frame *frame);
+/* Returns whether nothing was drawn with the program yet in such a frame: a driver compiles it for
+ * the first triangle, which can take longer than many frames. */
+bool surface_is_new(const struct surface *surface, const struct surface_frame *frame, int program);
 /* Sets up the state and uniforms of a program. Then, per patch, call geometry_bind and
  * surface_dissolve, and per piece surface_blend (unless the program blends no faces). With a
  * section plane both sides of triangles must be drawn: back faces show where solid matter is

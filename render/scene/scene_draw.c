@@ -21,8 +21,9 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
-	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
-	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
+	NEW_BUDGET_US = 30000, /* for the first triangles with a program */
+	SEASON_US = 1000000,   /* longest season of the tiles while the eye moves */
+	SHARE_PX_MAX = 320,    /* width of the picture from which image_share is counted */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
@@ -182,26 +183,53 @@ static int choose_program(const struct scene *scene, const struct surface_frame 
 			      v->range);
 }
 
-/* Draws program by program, so that each sets its uniforms once. */
+/* Returns how long it took. */
+static int64_t draw_with(struct scene *scene, const struct surface_frame *frame, int program)
+{
+	const int64_t began_us = clock_now_us();
+	struct run run = { .patch = HIERARCHY_NONE };
+	surface_begin(&scene->surface, frame, program);
+	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++)
+		if (scene->visible[i].program == program)
+			draw_piece(scene, frame, &scene->visible[i], &run);
+	end_run(&run);
+	return clock_now_us() - began_us;
+}
+
+/* Gives the pieces of a program to the one for a face less. */
+static void do_without(struct scene *scene, int program, uint32_t with[SURFACE_PROGRAMS])
+{
+	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++)
+		if (scene->visible[i].program == program)
+			scene->visible[i].program--;
+	with[program - 1] += with[program];
+	scene->programs_wait = true;
+}
+
+/* Draws program by program, so that each sets its uniforms once. When the first images come, nearly
+ * all of them are new; without a GPU that was a frame of 400 ms. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
-	const uint32_t count = scene->visible_count + scene->leaving_count;
 	uint32_t with[SURFACE_PROGRAMS] = { 0 };
-	for (uint32_t i = 0; i < count; i++) {
+	int64_t new_us = 0;
+	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++) {
 		struct visible_piece *v = &scene->visible[i];
 		v->program = choose_program(scene, frame, v);
 		if (v->program >= 0)
 			with[v->program]++;
 	}
+	scene->programs_wait = false;
 	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
-		struct run run = { .patch = HIERARCHY_NONE };
+		const bool is_new = surface_is_new(&scene->surface, frame, program);
 		if (with[program] == 0)
 			continue;
-		surface_begin(&scene->surface, frame, program);
-		for (uint32_t i = 0; i < count; i++)
-			if (scene->visible[i].program == program)
-				draw_piece(scene, frame, &scene->visible[i], &run);
-		end_run(&run);
+		if (is_new && new_us > NEW_BUDGET_US && surface_faces(program) > 0 &&
+		    !frame->shares)
+			do_without(scene, program, with);
+		else if (is_new)
+			new_us += draw_with(scene, frame, program);
+		else
+			draw_with(scene, frame, program);
 	}
 	geometry_cull_none();
 }
@@ -218,7 +246,10 @@ static void begin_picture(const struct scene *scene)
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-static void draw_picture(struct scene *scene, const struct view *view, bool shares)
+enum picture { PICTURE_DIRECT, PICTURE_ASIDE, PICTURE_SHARES };
+
+/* Direct: in the caller's framebuffer; aside: in a target; shares: there, of the images. */
+static void draw_picture(struct scene *scene, const struct view *view, enum picture kind)
 {
 	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
 	const struct surface_frame frame = {
@@ -230,11 +261,12 @@ static void draw_picture(struct scene *scene, const struct view *view, bool shar
 		.rake = scene->tools.rake,
 		.fog = scene_fog(scene),
 		.even = scene->options.mode == SCENE_CORNERS,
-		.shares = shares,
+		.shares = kind == PICTURE_SHARES,
+		.is_direct = kind == PICTURE_DIRECT,
 	};
 	draw_pieces(scene, &frame);
 	scene_draw_stream(scene, &frame);
-	if (!shares)
+	if (!frame.shares)
 		scene_draw_backdrop(scene, view);
 	scene_draw_scenery(scene, &frame);
 }
@@ -253,7 +285,7 @@ static float count_share(struct scene *scene)
 	begin_picture(scene);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT);
-	draw_picture(scene, &scene->view, true);
+	draw_picture(scene, &scene->view, PICTURE_SHARES);
 	size_t pixels = (size_t)small.width_px * (size_t)small.height_px;
 	uint8_t *rgba = malloc(4 * pixels);
 	double shares = 0, covered = 0;
@@ -272,8 +304,8 @@ static float count_share(struct scene *scene)
 
 static bool is_busy(const struct scene *scene)
 {
-	return scene->uploads_wait || scene->plans_are_stale || scene->fading ||
-	       scene->depth_is_stale || scene->backdrop.moves ||
+	return scene->uploads_wait || scene->plans_are_stale || scene->programs_wait ||
+	       scene->fading || scene->depth_is_stale || scene->backdrop.moves ||
 	       stream_growth_moves(&scene->stream.growth) || pool_busy(scene->pool) > 0 ||
 	       scene_scenery_waits(scene);
 }
@@ -351,7 +383,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
 		return false;
 	begin_picture(scene);
-	draw_picture(scene, &small, false);
+	draw_picture(scene, &small, PICTURE_ASIDE);
 	scene_draw_mask(scene, &small, &scene->enlargement.small);
 	enlargement_end(&scene->enlargement, place, view->width_px, view->height_px);
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
@@ -367,12 +399,12 @@ static void show_moving(struct scene *scene, const struct gl_place *place)
 	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0) {
 		gl_place_bind(place, view->width_px, view->height_px);
 		begin_picture(scene);
-		draw_picture(scene, view, false);
+		draw_picture(scene, view, PICTURE_DIRECT);
 		return;
 	}
 	gl_target_bind(frame);
 	begin_picture(scene);
-	draw_picture(scene, view, false);
+	draw_picture(scene, view, PICTURE_ASIDE);
 	scene_draw_mask(scene, view, frame);
 	accumulation_show_frame(&scene->accumulation, place);
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
@@ -388,7 +420,7 @@ static void draw_jittered(struct scene *scene, bool changed)
 	view_jitter(&jittered, x, y);
 	gl_target_bind(frame);
 	begin_picture(scene);
-	draw_picture(scene, &jittered, false);
+	draw_picture(scene, &jittered, PICTURE_ASIDE);
 	scene_draw_mask(scene, &jittered, frame);
 	outline_draw(&scene->outline, &place, frame->width_px, frame->height_px);
 }

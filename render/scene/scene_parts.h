@@ -127,6 +127,7 @@ struct scene {
 	struct enlargement enlargement;
 	struct visibility visibility;
 
+	bool programs_wait;     /* new ones for the next picture, pieces have fewer faces */
 	uint32_t refused;       /* number of objects that could not be used */
 	struct object *objects; /* owned */
 	uint32_t object_count, object_room;

@@ -98,7 +98,7 @@ void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 	scenery_picture_bend(&own->picture, &own->pose);
 	if (own->is_ready)
 		own->lacks = !scenery_picture_draw(&own->picture, &own->pose, frame);
-	else
+	else if (!scene->programs_wait)
 		prepare(scene, frame);
 }
 
