@@ -107,6 +107,7 @@ async function write() {
   await tabTo("#message a");
   await press("Enter");
   await browser.until(`location.pathname === "/information" && document.querySelector("#title")?.value === "Marked by keys"`, "the part's texts");
+  await browser.until(`document.querySelector("#page").isContentEditable`, "the page");
   await goRound("write");
   await tabTo("#caption");
   await browser.type("Without a mouse.");

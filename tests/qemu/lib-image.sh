@@ -16,14 +16,19 @@ mkdir -p "$out"
 conf=$(dirname "$out")
 cp build/qemu/release/root/1.json "$conf/root.json"
 printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' '[health]' 'listen = 0.0.0.0:9100' >"$conf/gopura.conf"
-# A box's 90 s for a start, and 30 s for a frame, are too few where another architecture is emulated.
-units=
+# An emulated processor needs seconds for what a box does in a tenth of one. Another architecture is slower again: there
+# a box's 90 s for a start are too few as well.
+units=$conf/units
+late() { # late UNIT LINE...
+	mkdir -p "$units/gopura-$1.service.d"
+	printf '%s\n' '[Service]' "${@:2}" >"$units/gopura-$1.service.d/emulated.conf"
+}
+rm -rf "$units"
+late kiosk WatchdogSec=120
 if [ "$ARCH" != amd64 ]; then
-	units=$conf/units
-	for unit in kiosk setup system usb; do
-		mkdir -p "$units/gopura-$unit.service.d"
-		printf '[Service]\nTimeoutStartSec=900\n' >"$units/gopura-$unit.service.d/emulated.conf"
+	late kiosk WatchdogSec=300 TimeoutStartSec=900
+	for unit in setup system usb; do
+		late "$unit" TimeoutStartSec=900
 	done
-	echo WatchdogSec=300 >>"$units/gopura-kiosk.service.d/emulated.conf"
 fi
 UNITS=$units CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh
