@@ -1,5 +1,6 @@
 #!/bin/bash
-# The longest frame while the demo's scenery appears before the eastern gate: build/bench/appear.json.
+# The longest frame while the first picture gets its images, and while the demo's scenery appears, before the eastern gate:
+# build/bench/appear.json.
 set -eu
 cd "$(dirname "$0")/../.."
 mkdir -p build/bench
