@@ -161,11 +161,11 @@ static void log_first_picture(struct frame *frame)
 {
 	const struct scene_frame *shown = &shown_by(frame)->frame;
 
-	if (frame->pictured || shown->patches + shown->stream_triangles == 0)
+	if (frame->pictured_ms || shown->patches + shown->stream_triangles == 0)
 		return;
-	frame->pictured = true;
+	frame->pictured_ms = clock_now_ms();
 	log_info("app", "first picture after %lld ms",
-		 (long long)(clock_now_ms() - frame->options.started_ms));
+		 (long long)(frame->pictured_ms - frame->options.started_ms));
 }
 
 /* Returns freed memory to the system. Once each time the picture settles, because it takes
@@ -236,7 +236,7 @@ static int draw(struct frame *frame, int64_t now_ms)
 	frame->words_us = measured_us(frame);
 	rc = draw_words(frame, now_ms);
 	if (rc == 0)
-		rc = setup_page_draw(o->setup_page, o->quads, frame->pictured, now_ms);
+		rc = setup_page_draw(o->setup_page, o->quads, frame->pictured_ms > 0, now_ms);
 	if (rc == 0)
 		rc = gl_check("drawing a frame");
 	frame->drawn_us = measured_us(frame);

@@ -48,7 +48,7 @@ struct frame {
 	int64_t spent_us;       /* what it took until it was handed to the display */
 	bool pending;           /* the eye moved in it, and its time is not noted yet */
 	bool words_move;        /* the overlay still changes */
-	bool pictured;          /* the model was drawn at least once */
+	int64_t pictured_ms;    /* when the model was first drawn; 0: not yet */
 	bool memory_given_back; /* done since the picture last settled */
 };
 

@@ -436,8 +436,9 @@ static int setup_page_wait(void *data)
 {
 	const struct kiosk *kiosk = data;
 
-	return is_at_rest(kiosk) ? setup_page_wait_ms(&kiosk->setup_page, kiosk->frame.pictured)
-				 : -1;
+	return is_at_rest(kiosk)
+		       ? setup_page_wait_ms(&kiosk->setup_page, kiosk->frame.pictured_ms > 0)
+		       : -1;
 }
 
 /* The page fades out in frames. */
@@ -445,7 +446,7 @@ static int setup_page_step(void *data)
 {
 	struct kiosk *kiosk = data;
 
-	if (setup_page_wait_ms(&kiosk->setup_page, kiosk->frame.pictured) == 0)
+	if (setup_page_wait_ms(&kiosk->setup_page, kiosk->frame.pictured_ms > 0) == 0)
 		redraw_ask(&kiosk->redraw);
 	return 0;
 }
@@ -624,12 +625,20 @@ void kiosk_stop(struct kiosk *kiosk)
 	provision_finish(&kiosk->provision);
 }
 
+/* Whether the start, or the first picture after it, is only seconds ago. */
+static bool is_lost_at_once(const struct kiosk *kiosk)
+{
+	const int64_t started_ms = kiosk->started_ms, pictured_ms = kiosk->frame.pictured_ms;
+
+	return clock_now_ms() - (pictured_ms > 0 ? pictured_ms : started_ms) < LOST_LEAST_MS;
+}
+
 int kiosk_run(struct kiosk *kiosk)
 {
 	const int rc = loop_run(&kiosk->loop);
 
 	service_stopping();
-	if (rc == -ENOTRECOVERABLE && clock_now_ms() - kiosk->started_ms < LOST_LEAST_MS) {
+	if (rc == -ENOTRECOVERABLE && is_lost_at_once(kiosk)) {
 		log_error("app", "board bug: the GPU loses its context as soon as it is used");
 		return -EIO; /* counts as a crash: a restart would not help */
 	}

@@ -19,7 +19,7 @@ static void write_frames(const struct vitals *vitals, struct buffer *out)
 	metrics_gauge(out, "gopura_kiosk_frame_work_seconds", "Work of the last frame.",
 		      (double)vitals->frame->work_us / 1e6);
 	metrics_gauge(out, "gopura_kiosk_picture", "Whether the model was drawn since the start.",
-		      vitals->frame->pictured);
+		      vitals->frame->pictured_ms > 0);
 }
 
 static void write_release(const struct vitals *vitals, struct buffer *out)

@@ -107,7 +107,7 @@ static int64_t real_ms(void)
  * shots are taken waits for others. */
 static bool held(void)
 {
-	return stands_still || (!kiosk.frame.pictured && virtual_us > 1000000000 + HELD_AT_US);
+	return stands_still || (!kiosk.frame.pictured_ms && virtual_us > 1000000000 + HELD_AT_US);
 }
 
 int64_t __wrap_clock_now_us(void)
@@ -160,7 +160,7 @@ static void advance(int64_t by_us)
 
 	if (held())
 		return;
-	if (!kiosk.frame.pictured && by_us > REAL_WAIT_MS * 1000)
+	if (!kiosk.frame.pictured_ms && by_us > REAL_WAIT_MS * 1000)
 		by_us = REAL_WAIT_MS * 1000;
 	if (next_us - virtual_us < by_us)
 		by_us = next_us - virtual_us;
@@ -175,7 +175,7 @@ static bool at_rest(void)
 
 	for (int i = 0; i < TOUCH_CONTACTS_MAX; i++)
 		down = down || kiosk.fingers.gestures.fingers[i].down;
-	return kiosk.options.shots_path && kiosk.frame.pictured && !kiosk.eye.moves && !down;
+	return kiosk.options.shots_path && kiosk.frame.pictured_ms && !kiosk.eye.moves && !down;
 }
 
 /* Whether decoders work at what the next frame would show. What they have done before that frame is
@@ -189,7 +189,7 @@ static bool others_work(void)
 {
 	const struct exhibit *shown = &kiosk.releases.sessions.shown.exhibit;
 
-	if (!kiosk.frame.pictured || (!shown->frame.settled && !kiosk.redraw.wanted))
+	if (!kiosk.frame.pictured_ms || (!shown->frame.settled && !kiosk.redraw.wanted))
 		return true;
 	return at_rest() && decoders_work(shown->scene);
 }
