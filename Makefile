@@ -52,6 +52,13 @@ FUZZ_MAIN =
 $(BUILD)/tests/fuzz/fuzz_%: EXTRA += -fsanitize=fuzzer
 endif
 
+# make fuzz-coverage: the same targets tell which lines they reached.
+ifneq ($(COVERAGE),)
+CC      := $(if $(shell command -v ccache),ccache )clang
+WARN    := $(filter-out -Werror,$(WARN))
+OPT     := -O1 -g1 -fprofile-instr-generate -fcoverage-mapping
+endif
+
 MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c curator/main.c
 SOURCES  := $(filter-out $(MAINS),$(shell find $(FOLDERS) -name '*.c' | sort))
 ifneq ($(WINDOW),yes) # an appliance has no desktop, and no room for what SDL brings along
@@ -74,7 +81,7 @@ BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo curator test check soak soak-year torture badinput pictures golden fuzz powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo curator test check soak soak-year torture badinput pictures golden fuzz fuzz-coverage powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -139,6 +146,10 @@ fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds eac
 	@./deps.sh tests/fuzz/tools.txt
 	@TIME="$(TIME)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
 
+fuzz-coverage: deps ## lines and branches of each decoder that the fuzz targets' inputs reach, into build/coverage/; TARGET=NAME for one
+	@./deps.sh tests/fuzz/tools.txt
+	@TARGET="$(TARGET)" python3 tests/fuzz/coverage.py
+
 powercut: all $(BUILD)/.test-deps ## power cuts: at every write of cache and state (minutes), and 100 of the appliance (hours); CUTS=N, SEED=N
 	@$(if $(CUT),,$(MAKE) --no-print-directory $(BUILD)/tests/storage/test_powercut)
 	@$(if $(CUT),,nice -n 10 $(BUILD)/tests/storage/test_powercut --all $(SEED))
@@ -191,7 +202,7 @@ $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGO
 VECTORS := geometry/substance pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
 $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
 # Kiosks decode patches all the time: with these loops unrolled, a fifth faster.
-ifeq ($(SAN)$(FUZZER),)
+ifeq ($(SAN)$(FUZZER)$(COVERAGE),)
 $(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o $(BUILD)/obj/format/precision.o: OPT := -O3 -g
 endif
 # This one is also GLSL, whose constants are of single precision.

@@ -248,7 +248,7 @@ static int settle_colours(struct mesh *mesh, const struct import_options *option
 
 	if (mesh->textures)
 		return mesh_colours_from_textures(mesh, import_jobs(options));
-	if (report->had_colours && !options->override_colour)
+	if (report->had_colours && mesh->colours && !options->override_colour)
 		return 0;
 	if (!mesh->colours) {
 		mesh->colours = spill_alloc((size_t)mesh->vertex_count * 4);

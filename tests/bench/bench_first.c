@@ -108,8 +108,9 @@ static void count_start(struct bench *bench)
 
 static void judge(struct bench *bench)
 {
-	uint8_t *rgba = stage_read(&bench->stage);
-	const double db = stage_psnr(&bench->stage, rgba, bench->truth, 0);
+	uint8_t *rgba = stage_read_panel(&bench->stage);
+	const double db = stage_psnr(&bench->stage, rgba, bench->stage.scene->root.background,
+				     bench->truth, 0);
 
 	for (int i = 0; i < 2; i++)
 		if (bench->db_ms[i] < 0 && db >= goals_db[i]) {
@@ -134,7 +135,7 @@ static void film(struct bench *bench)
 
 	if (!bench->film || now_ms(bench) < 1000ll << bench->filmed)
 		return;
-	rgba = stage_read(&bench->stage);
+	rgba = stage_read_panel(&bench->stage);
 	stage_keep(&bench->stage, rgba, bench->film, bench->filmed++);
 	free(rgba);
 }

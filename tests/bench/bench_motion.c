@@ -258,8 +258,9 @@ static void draw_moment(struct bench *bench, uint32_t i)
 	m->depth_faces = frame.depth_faces_drawn;
 	m->bytes = stage->bytes;
 	uint8_t *before = stage_read(stage);
-	m->psnr = m->judge && bench->truth ? stage_psnr(stage, before, bench->truth, m->judge - 1)
-					   : NAN;
+	m->psnr = m->judge && bench->truth
+			  ? stage_psnr(stage, before, stage_grey, bench->truth, m->judge - 1)
+			  : NAN;
 	if (m->judge && (i + 1 == bench->moment_count || bench->moment[i + 1].judge != m->judge))
 		stage_keep(stage, before, bench->out, m->judge - 1);
 	if (!m->rests) {

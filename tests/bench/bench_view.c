@@ -103,7 +103,7 @@ static void trace(struct bench *bench)
 			stage_frame(stage, &bench->camera[0], &frame);
 		} while (frame.moving || stage->flights > 0 || stage->bytes != before);
 		rgba = stage_read(stage);
-		psnr = stage_psnr(stage, rgba, bench->truth, 0);
+		psnr = stage_psnr(stage, rgba, stage_grey, bench->truth, 0);
 		free(rgba);
 		printf("%8.0f KB %6.2f dB %7u triangles\n", (double)stage->bytes / 1000, psnr,
 		       frame.triangles);
@@ -122,7 +122,8 @@ static void draw_view(struct bench *bench, uint32_t view)
 	const uint32_t frames = stage_settle(stage, &bench->camera[view], SETTLE_MS, &frame);
 	const int64_t settled_ms = clock_now_ms() - began_ms;
 	uint8_t *rgba = stage_read(stage);
-	const double psnr = bench->truth ? stage_psnr(stage, rgba, bench->truth, view) : NAN;
+	const double psnr =
+		bench->truth ? stage_psnr(stage, rgba, stage_grey, bench->truth, view) : NAN;
 
 	stage_keep(stage, rgba, bench->out, view);
 	free(rgba);

@@ -159,7 +159,7 @@ static void judge(struct bench *bench, struct shot *shot, uint32_t moment, bool 
 	if (!strcmp(bench->truth, "none"))
 		return;
 	picture = stage_read(&bench->stage);
-	shot->psnr = stage_psnr(&bench->stage, picture, bench->truth, moment);
+	shot->psnr = stage_psnr(&bench->stage, picture, stage_grey, bench->truth, moment);
 	if (bench->keeps && keeps)
 		stage_keep(&bench->stage, picture, bench->out, moment);
 	free(picture);

@@ -392,14 +392,36 @@ uint8_t *stage_read(struct stage *stage)
 	return rgba;
 }
 
-/* ---- quality */
+enum { GROUND_LEVELS = 8 }; /* of an image that shows the background */
 
-static double over_grey(const uint8_t pixel[4], int channel)
+uint8_t *stage_read_panel(struct stage *stage)
 {
-	return (pixel[channel] * pixel[3] + 96.0 * (255 - pixel[3])) / 255;
+	const uint8_t *ground = stage->scene->root.background;
+	const size_t pixels = (size_t)stage->target.width_px * (size_t)stage->target.height_px;
+	uint8_t *rgba = malloc(4 * pixels);
+
+	if (!rgba || gl_target_read(&stage->target, rgba) < 0)
+		stage_die("reading the picture", -EIO);
+	for (size_t i = 0; i < pixels; i++) {
+		bool is_ground = true;
+
+		for (int k = 0; k < 3; k++)
+			is_ground &= abs(rgba[4 * i + (size_t)k] - ground[k]) <= GROUND_LEVELS;
+		rgba[4 * i + 3] = is_ground ? 0 : 255;
+	}
+	return rgba;
 }
 
-static double psnr_of(const struct picture *a, const uint8_t *b)
+/* ---- quality */
+
+const uint8_t stage_grey[3] = { 96, 96, 96 };
+
+static double over(const uint8_t pixel[4], const uint8_t ground[3], int channel)
+{
+	return (pixel[channel] * pixel[3] + (double)ground[channel] * (255 - pixel[3])) / 255;
+}
+
+static double psnr_of(const struct picture *a, const uint8_t *b, const uint8_t ground[3])
 {
 	double sum = 0, count = 0;
 
@@ -409,7 +431,7 @@ static double psnr_of(const struct picture *a, const uint8_t *b)
 		if (p[3] == 0 && q[3] == 0)
 			continue;
 		for (int k = 0; k < 3; k++) {
-			const double d = over_grey(p, k) - over_grey(q, k);
+			const double d = over(p, ground, k) - over(q, ground, k);
 
 			sum += d * d;
 		}
@@ -418,7 +440,8 @@ static double psnr_of(const struct picture *a, const uint8_t *b)
 	return count > 0 ? 10 * log10(255.0 * 255.0 * count / (sum + 1e-3)) : 99;
 }
 
-double stage_psnr(const struct stage *stage, const uint8_t *rgba, const char *folder, uint32_t view)
+double stage_psnr(const struct stage *stage, const uint8_t *rgba, const uint8_t ground[3],
+		  const char *folder, uint32_t view)
 {
 	struct picture truth = { 0 };
 	struct buffer file;
@@ -431,7 +454,7 @@ double stage_psnr(const struct stage *stage, const uint8_t *rgba, const char *fo
 	    picture_decode(&truth, buffer_bytes(&file)) == 0 &&
 	    (int)truth.width == stage->target.width_px &&
 	    (int)truth.height == stage->target.height_px)
-		psnr = psnr_of(&truth, rgba);
+		psnr = psnr_of(&truth, rgba, ground);
 	picture_finish(&truth);
 	buffer_finish(&file);
 	return psnr;

@@ -91,10 +91,16 @@ uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t 
 /* What the target shows, straight alpha, width x height x 4, owned by the caller. */
 uint8_t *stage_read(struct stage *stage);
 
-/* PSNR of the stage's picture against FOLDER/view-NNNN.png over the union of both silhouettes on
- * one grey (as tests/tools/compare_pictures has it); NAN where there is no such picture. */
-double stage_psnr(const struct stage *stage, const uint8_t *rgba, const char *folder,
-		  uint32_t view);
+/* As a panel shows it, with its background, whose alpha alone is 0. What stands in for the model
+ * (render/lumigraph/backdrop.h) only guesses its alpha. */
+uint8_t *stage_read_panel(struct stage *stage);
+
+/* PSNR of the stage's picture against FOLDER/view-NNNN.png over the union of both silhouettes, both
+ * on one colour; NAN where there is no such picture. The grey is that of
+ * tests/tools/compare_pictures. */
+extern const uint8_t stage_grey[3];
+double stage_psnr(const struct stage *stage, const uint8_t *rgba, const uint8_t ground[3],
+		  const char *folder, uint32_t view);
 void stage_keep(const struct stage *stage, uint8_t *rgba, const char *folder, uint32_t view);
 
 double stage_median(double *values, uint32_t count); /* sorts them */

@@ -57,7 +57,7 @@ int sandbox_open(const char *name)
 
 static void give_mesh(const uint8_t *mesh, size_t size)
 {
-	uint8_t *sealed = scratch_sealed(mesh, size);
+	uint8_t *sealed = scratch_sealed(mesh, size, true);
 
 	if (sealed && write(result_fd, sealed, size) != (ssize_t)size)
 		abort();

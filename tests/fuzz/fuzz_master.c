@@ -57,7 +57,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	if (size >= STAMP_AT + HASH_BYTES)
 		memset(copy + STAMP_AT, 0, HASH_BYTES);
 	read_it(copy, size);
-	sealed = scratch_sealed(copy, size);
+	sealed = scratch_sealed(copy, size, false);
 	if (sealed)
 		read_it(sealed, size);
 	free(sealed);

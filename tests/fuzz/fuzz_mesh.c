@@ -41,7 +41,7 @@ static void read_it(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	uint8_t *sealed = scratch_sealed(data, size);
+	uint8_t *sealed = scratch_sealed(data, size, true);
 
 	read_it(data, size);
 	if (sealed)

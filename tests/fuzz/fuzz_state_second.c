@@ -25,7 +25,7 @@ static void read_it(const uint8_t *data, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	uint8_t *sealed = scratch_sealed(data, size);
+	uint8_t *sealed = scratch_sealed(data, size, false);
 
 	scratch_begin();
 	read_it(data, size);
