@@ -221,15 +221,15 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 	scene->programs_wait = false;
 	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
 		const bool is_new = surface_is_new(&scene->surface, frame, program);
+		const bool can_wait = surface_faces(program) > 0 && !frame->shares;
 		if (with[program] == 0)
 			continue;
-		if (is_new && new_us > NEW_BUDGET_US && surface_faces(program) > 0 &&
-		    !frame->shares)
+		if (is_new && can_wait && new_us > NEW_BUDGET_US) {
 			do_without(scene, program, with);
-		else if (is_new)
-			new_us += draw_with(scene, frame, program);
-		else
-			draw_with(scene, frame, program);
+			continue;
+		}
+		const int64_t us = draw_with(scene, frame, program);
+		new_us += is_new ? us : 0;
 	}
 	geometry_cull_none();
 }
