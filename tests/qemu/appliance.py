@@ -249,7 +249,7 @@ def faulty(machine, stick, name):
 
 def changed(machine):
     """With one changed byte in the root of the slot that runs, the other one starts. The byte tells when the file system was made: nothing but
-    its hash tree would notice."""
+    its hash tree would notice. Returns the machine that was started for it."""
     machine.stop()
     where = next(part["start"] for part in table(machine.disk) if part["name"] == "gopura-root-b") * 512 + 8
     with open(machine.disk, "r+b") as disk:
@@ -261,19 +261,22 @@ def changed(machine):
     try:
         print(machine.said("verity: .*data block 0 is corrupted", BOOT_S))
         print(machine.said("slot A, .* is good", BACK_S), "again")
-    finally:
+    except BaseException:
         machine.stop()
+        raise
+    return machine
 
 
-# What is tested, in this order, with the stick of the same name if there is one. older and changed need a good slot B.
+# What is tested, in this order, with the stick of the same name if there is one. older and changed need a good slot B, and changed a good slot A,
+# which the faulty ones then leave to run alone.
 CASES = {
     "visit": lambda machine, stick: visit(machine),
     "tampered": tampered,
     "next": newer,
     "older": older,
+    "changed": lambda machine, stick: changed(machine),
     "blank": lambda machine, stick: faulty(machine, stick, "blank"),
     "hangs": lambda machine, stick: faulty(machine, stick, "hangs"),
-    "changed": lambda machine, stick: changed(machine),
 }
 
 
@@ -305,7 +308,7 @@ def main():
     try:
         for name in cases(sticks, sys.argv[4:]):
             since = time.monotonic()
-            CASES[name](machine, os.path.join(sticks or "", name + ".img"))
+            machine = CASES[name](machine, os.path.join(sticks or "", name + ".img")) or machine
             print(f"{name}: {time.monotonic() - since:.0f} s")
     finally:
         machine.stop()
