@@ -42,21 +42,20 @@ OPT     := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined 
 endif
 
 # tests/fuzz/main.c runs a fuzz target over its corpus; FUZZER=yes links it with clang's libFuzzer instead.
+# COVERAGE=yes has the targets count which lines they reach.
 FUZZ_MAIN = $(BUILD)/obj/tests/fuzz/main.o
-ifneq ($(FUZZER),)
+ifneq ($(FUZZER)$(COVERAGE),)
 CC      := $(if $(shell command -v ccache),ccache )clang
 WARN    := $(filter-out -Werror,$(WARN)) # clang's warnings are not gcc's, which keeps the code clean
+endif
+ifneq ($(COVERAGE),)
+OPT     := -O1 -g1 -fprofile-instr-generate -fcoverage-mapping
+endif
+ifneq ($(FUZZER),)
 OPT     := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer \
            -ftrivial-auto-var-init=pattern
 FUZZ_MAIN =
 $(BUILD)/tests/fuzz/fuzz_%: EXTRA += -fsanitize=fuzzer
-endif
-
-# make fuzz-coverage: the same targets tell which lines they reached.
-ifneq ($(COVERAGE),)
-CC      := $(if $(shell command -v ccache),ccache )clang
-WARN    := $(filter-out -Werror,$(WARN))
-OPT     := -O1 -g1 -fprofile-instr-generate -fcoverage-mapping
 endif
 
 MAINS    := app/main.c net/main.c pipeline/main.c health/main.c system/main.c curator/main.c

@@ -197,18 +197,18 @@ int frame_unseen(struct frame *frame)
 static void log_slow(struct frame *frame)
 {
 	const int64_t end_us = frame->began_us + frame->spent_us;
-	const double second = 1e6;
+	const double us_a_second = 1e6;
 
 	if (frame->spent_us <= (frame->slowest_us > SLOW_US ? frame->slowest_us : SLOW_US))
 		return;
 	frame->slowest_us = frame->spent_us;
 	log_info("app",
 		 "a frame took %.1f s: %.1f before the scene, scene %.1f, words %.1f, panel %.1f",
-		 (double)frame->spent_us / second,
-		 (double)(frame->scene_us - frame->began_us) / second,
-		 (double)(frame->words_us - frame->scene_us) / second,
-		 (double)(frame->drawn_us - frame->words_us) / second,
-		 (double)(end_us - frame->drawn_us) / second);
+		 (double)frame->spent_us / us_a_second,
+		 (double)(frame->scene_us - frame->began_us) / us_a_second,
+		 (double)(frame->words_us - frame->scene_us) / us_a_second,
+		 (double)(frame->drawn_us - frame->words_us) / us_a_second,
+		 (double)(end_us - frame->drawn_us) / us_a_second);
 }
 
 /* ---- the frame */

@@ -183,23 +183,22 @@ static int choose_program(const struct scene *scene, const struct surface_frame 
 			      v->range);
 }
 
-/* Returns how long it took. */
-static int64_t draw_with(struct scene *scene, const struct surface_frame *frame, int program)
+static void draw_with(struct scene *scene, const struct surface_frame *frame, int program)
 {
-	const int64_t began_us = clock_now_us();
+	const uint32_t count = scene->visible_count + scene->leaving_count;
 	struct run run = { .patch = HIERARCHY_NONE };
 	surface_begin(&scene->surface, frame, program);
-	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++)
+	for (uint32_t i = 0; i < count; i++)
 		if (scene->visible[i].program == program)
 			draw_piece(scene, frame, &scene->visible[i], &run);
 	end_run(&run);
-	return clock_now_us() - began_us;
 }
 
 /* Gives the pieces of a program to the one for a face less. */
 static void do_without(struct scene *scene, int program, uint32_t with[SURFACE_PROGRAMS])
 {
-	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++)
+	const uint32_t count = scene->visible_count + scene->leaving_count;
+	for (uint32_t i = 0; i < count; i++)
 		if (scene->visible[i].program == program)
 			scene->visible[i].program--;
 	with[program - 1] += with[program];
@@ -207,12 +206,13 @@ static void do_without(struct scene *scene, int program, uint32_t with[SURFACE_P
 }
 
 /* Draws program by program, so that each sets its uniforms once. When the first images come, nearly
- * all of them are new; without a GPU that was a frame of 400 ms. */
+ * all of them are new, and without a GPU a frame that begins with all takes up to two seconds. */
 static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 {
+	const uint32_t count = scene->visible_count + scene->leaving_count;
 	uint32_t with[SURFACE_PROGRAMS] = { 0 };
 	int64_t new_us = 0;
-	for (uint32_t i = 0; i < scene->visible_count + scene->leaving_count; i++) {
+	for (uint32_t i = 0; i < count; i++) {
 		struct visible_piece *v = &scene->visible[i];
 		v->program = choose_program(scene, frame, v);
 		if (v->program >= 0)
@@ -220,16 +220,18 @@ static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
 	}
 	scene->programs_wait = false;
 	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
-		const bool is_new = surface_is_new(&scene->surface, frame, program);
 		const bool can_wait = surface_faces(program) > 0 && !frame->shares;
 		if (with[program] == 0)
 			continue;
-		if (is_new && can_wait && new_us > NEW_BUDGET_US) {
+		if (!surface_is_new(&scene->surface, frame, program)) {
+			draw_with(scene, frame, program);
+		} else if (can_wait && new_us > NEW_BUDGET_US) {
 			do_without(scene, program, with);
-			continue;
+		} else {
+			const int64_t began_us = clock_now_us();
+			draw_with(scene, frame, program);
+			new_us += clock_now_us() - began_us;
 		}
-		const int64_t us = draw_with(scene, frame, program);
-		new_us += is_new ? us : 0;
 	}
 	geometry_cull_none();
 }

@@ -381,28 +381,37 @@ uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t 
 	return frames;
 }
 
-uint8_t *stage_read(struct stage *stage)
+static size_t pixel_count(const struct stage *stage)
 {
-	const size_t pixels = (size_t)stage->target.width_px * (size_t)stage->target.height_px;
-	uint8_t *rgba = malloc(4 * pixels);
+	return (size_t)stage->target.width_px * (size_t)stage->target.height_px;
+}
+
+static uint8_t *read_target(const struct stage *stage)
+{
+	uint8_t *rgba = malloc(4 * pixel_count(stage));
 
 	if (!rgba || gl_target_read(&stage->target, rgba) < 0)
 		stage_die("reading the picture", -EIO);
-	scene_unmix(stage->scene, rgba, pixels);
 	return rgba;
 }
 
-enum { GROUND_LEVELS = 8 }; /* of an image that shows the background */
+uint8_t *stage_read(struct stage *stage)
+{
+	uint8_t *rgba = read_target(stage);
+
+	scene_unmix(stage->scene, rgba, pixel_count(stage));
+	return rgba;
+}
+
+/* By how much the background may differ in an image, which is compressed. */
+enum { GROUND_LEVELS = 8 };
 
 uint8_t *stage_read_panel(struct stage *stage)
 {
 	const uint8_t *ground = stage->scene->root.background;
-	const size_t pixels = (size_t)stage->target.width_px * (size_t)stage->target.height_px;
-	uint8_t *rgba = malloc(4 * pixels);
+	uint8_t *rgba = read_target(stage);
 
-	if (!rgba || gl_target_read(&stage->target, rgba) < 0)
-		stage_die("reading the picture", -EIO);
-	for (size_t i = 0; i < pixels; i++) {
+	for (size_t i = 0; i < pixel_count(stage); i++) {
 		bool is_ground = true;
 
 		for (int k = 0; k < 3; k++)

@@ -91,8 +91,8 @@ uint32_t stage_settle(struct stage *stage, const struct camera *camera, int64_t 
 /* What the target shows, straight alpha, width x height x 4, owned by the caller. */
 uint8_t *stage_read(struct stage *stage);
 
-/* As a panel shows it, with its background, whose alpha alone is 0. What stands in for the model
- * (render/lumigraph/backdrop.h) only guesses its alpha. */
+/* The same colours as on a panel, mixed with the background; alpha is 0 where the background is
+ * seen, 255 elsewhere. For pictures whose own alpha is a guess (render/lumigraph/backdrop.h). */
 uint8_t *stage_read_panel(struct stage *stage);
 
 /* PSNR of the stage's picture against FOLDER/view-NNNN.png over the union of both silhouettes, both

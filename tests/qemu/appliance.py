@@ -267,8 +267,8 @@ def changed(machine):
     return machine
 
 
-# What is tested, in this order, with the stick of the same name if there is one. older and changed need a good slot B, and changed a good slot A,
-# which the faulty ones then leave to run alone.
+# What is tested, in this order, with the stick of the same name if there is one. older and changed need a good slot B;
+# changed also a good slot A, in which blank or hangs may lie after their turn, so it comes before them.
 CASES = {
     "visit": lambda machine, stick: visit(machine),
     "tampered": tampered,

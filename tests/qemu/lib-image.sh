@@ -19,16 +19,16 @@ printf '%s\n' '[release]' 'url = /usr/share/gopura/release' 'trust = root.json' 
 # An emulated processor needs seconds for what a box does in a tenth of one. Another architecture is slower again: there
 # a box's 90 s for a start are too few as well.
 units=$conf/units
-late() { # late UNIT LINE...
+drop_in() { # drop_in UNIT LINE...
 	mkdir -p "$units/gopura-$1.service.d"
 	printf '%s\n' '[Service]' "${@:2}" >"$units/gopura-$1.service.d/emulated.conf"
 }
 rm -rf "$units"
-late kiosk WatchdogSec=120
+drop_in kiosk WatchdogSec=120
 if [ "$ARCH" != amd64 ]; then
-	late kiosk WatchdogSec=300 TimeoutStartSec=900
+	drop_in kiosk WatchdogSec=300 TimeoutStartSec=900
 	for unit in setup system usb; do
-		late "$unit" TimeoutStartSec=900
+		drop_in "$unit" TimeoutStartSec=900
 	done
 fi
 UNITS=$units CONF=$conf/gopura.conf RELEASE=build/qemu/release OUT=$out KERNEL="console=$console loglevel=5 systemd.journald.forward_to_console=1" LEVEL=${LEVEL:-3} TRACKER=no image/build.sh

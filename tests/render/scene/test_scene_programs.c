@@ -84,26 +84,14 @@ static void a_frame_has_one_that_takes_long(void **state)
 	int most, programs;
 
 	(void)state;
+	release = little_release_make(4);
 	programs = rake(&at_once, 100, &most);
 	CHECK(programs >= 2 && most == programs);
 	CHECK(rake(&in_turn, SLOW_US, &most) == programs && most == 1);
 	CHECK(mean_difference(in_turn.seen, at_once.seen) < 0.5);
 	strike_stage(&in_turn);
 	strike_stage(&at_once);
-}
-
-static int make_release(void **state)
-{
-	(void)state;
-	release = little_release_from(4, NULL);
-	return 0;
-}
-
-static int free_release(void **state)
-{
-	(void)state;
 	little_release_free(release);
-	return 0;
 }
 
 int main(void)
@@ -112,5 +100,5 @@ int main(void)
 		cmocka_unit_test(a_frame_has_one_that_takes_long),
 	};
 
-	return cmocka_run_group_tests(tests, make_release, free_release);
+	return cmocka_run_group_tests(tests, NULL, NULL);
 }
