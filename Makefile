@@ -130,10 +130,10 @@ pictures: all $(BUILD)/.test-deps ## 16 views of the half-size demo temple again
 golden: all $(BUILD)/.test-deps ## pictures of every state in four languages into build/golden/, compared with the reviewed ones; KEEP=yes keeps them
 	@LANGUAGES="$(or $(LANGUAGES),en km ja ar)" STATES="$(STATES)" KEEP="$(KEEP)" bash tests/e2e/golden.sh
 
-# image/arch.sh reads ARCH from the environment, where make puts it if the command line has it.
-IMAGE_DEPS = ./deps.sh image/tools.txt$(if $(filter arm64,$(ARCH)), && ./deps.sh image/tools-arm64.txt)
+# image/arch.sh reads ARCH and BOARD from the environment, where make puts them if the command line has them.
+IMAGE_DEPS = ./deps.sh image/tools.txt$(if $(filter arm64,$(ARCH))$(BOARD), && ./deps.sh image/tools-arm64.txt)
 
-image: all ## the bootable disk image of a terminal, build/image/gopura.img; ARCH=arm64: build/image-arm64/gopura.img
+image: all ## the bootable disk image of a terminal, build/image/gopura.img; ARCH=arm64: build/image-arm64/gopura.img; BOARD=raspberry-pi: for a Pi 4
 	@$(IMAGE_DEPS)
 	@image/build.sh
 
@@ -158,9 +158,13 @@ interrupted: all $(BUILD)/.test-deps ## builds killed and out of disk at random 
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 	@KILLS=20 SEED=$(or $(SEED),1) bash tests/e2e/publish.sh
 
-qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk, changed bytes, Secure Boot; ARCH=arm64: temple, tap and updates of that image
+qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk, changed bytes, Secure Boot; ARCH=arm64: temple, tap and updates of that image; BOARD=raspberry-pi: its start
+ifeq ($(BOARD),raspberry-pi)
+	@bash tests/qemu/raspberry_pi.sh
+else
 	@bash tests/qemu/image.sh updates
 	@$(if $(filter arm64,$(ARCH)),,bash tests/qemu/disks.sh all && bash tests/qemu/loader.sh all)
+endif
 
 qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC screen
 	@./deps.sh image/tools.txt

@@ -13,8 +13,8 @@ if [ "$(id -u)" = 0 ]; then as_root=; else
 fi
 echo "Installing $(echo "$missing" | wc -l) Debian packages (see $list) ..."
 $as_root apt-get update -qq
-# shellcheck disable=SC2086
 # A new machine often installs its own updates for its first minutes: this waits for them.
+# shellcheck disable=SC2086
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=600 \
 	-o Dpkg::Progress-Fancy=0 -o Dpkg::Use-Pty=0 $missing </dev/null >build/deps.log 2>&1 ||
 	{ tail -20 build/deps.log >&2; exit 1; }

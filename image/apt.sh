@@ -1,7 +1,7 @@
 # apt.sh: to be sourced. apt for packages of any architecture and mirror, with lists and status of its own: nothing of
 # this machine changes, and nothing of this machine decides what is chosen.
 
-# apt_from MIRROR: prints Debian 12's lists of packages at this mirror, as sources.list has them. A % in it stands for
+# apt_from MIRROR [COMPONENTS]: prints Debian 12's lists of packages at this mirror, as sources.list has them. A % in it stands for
 # debian or debian-security, as a date of snapshot.debian.org needs; such lists stay valid for ever.
 apt_from() {
 	local key=/usr/share/keyrings/debian-archive-keyring.gpg mirror=$1 ever=
@@ -9,15 +9,15 @@ apt_from() {
 	*%*) ever=' check-valid-until=no' ;;
 	*) mirror=$mirror/% ;;
 	esac
-	printf "deb [signed-by=$key$ever] %s main\n" "${mirror//%/debian} bookworm" "${mirror//%/debian} bookworm-updates" \
+	printf "deb [signed-by=$key$ever] %s ${2:-main}\n" "${mirror//%/debian} bookworm" "${mirror//%/debian} bookworm-updates" \
 		"${mirror//%/debian-security} bookworm-security"
 }
 
-# apt_start FOLDER ARCH MIRROR: fetches the lists into the folder; the status is that of apt-get
+# apt_start FOLDER ARCH MIRROR [COMPONENTS]: fetches the lists into the folder; the status is that of apt-get
 apt_start() {
 	rm -rf "$1"
 	mkdir -p "$1"/{lists,cache/archives}/partial
-	apt_from "$3" >"$1/sources.list"
+	apt_from "$3" "${4:-main}" >"$1/sources.list"
 	echo "$2" >"$1/arch"
 	: >"$1/status"
 	apt_in "$1" get -qq update

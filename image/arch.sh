@@ -1,7 +1,15 @@
-# arch.sh: to be sourced. What differs between the architectures that an image is built for: ARCH=amd64 (the default) or
-# ARCH=arm64, both with UEFI firmware.
-ARCH=${ARCH:-amd64}
-cross='' image_folder=build/image programs=build/appliance tools=()
+# arch.sh: to be sourced. What differs between the machines that an image is built for: ARCH=amd64 (the default) or
+# ARCH=arm64, both with UEFI firmware, or BOARD=raspberry-pi, which is arm64 with the board's own firmware.
+BOARD=${BOARD:-}
+case $BOARD in
+'') ARCH=${ARCH:-amd64} ;;
+raspberry-pi) ARCH=${ARCH:-arm64} ;;
+*)
+	echo "image: BOARD must be raspberry-pi or nothing, not '$BOARD'" >&2
+	exit 1
+	;;
+esac
+cross='' image_folder=build/image programs=build/appliance tools=() board_packages=() components=main
 case $ARCH in
 amd64)
 	triplet=x86_64-linux-gnu grub=x86_64-efi loader=BOOTX64.EFI compatible=gopura-x86-64
@@ -16,4 +24,9 @@ arm64)
 	exit 1
 	;;
 esac
-export ARCH
+if [ -n "$BOARD" ]; then
+	[ "$ARCH" = arm64 ] || { echo "image: BOARD=$BOARD has ARCH=arm64, not '$ARCH'" >&2; exit 1; }
+	image_folder=build/image-$BOARD
+	board_packages=(u-boot-rpi raspi-firmware) components='main non-free-firmware' # only the firmware is not free
+fi
+export ARCH BOARD

@@ -156,7 +156,10 @@ mformat -i "$esp" -F -v GOPURA -N 676f7075 ::
 # The loader holds its own settings, and the public key that all it reads must be signed with, but for grubenv.
 rm -rf "$out/loader"
 mkdir -p "$out/loader/boot/grub"
-sed "s|@KERNEL@|${KERNEL:-}|" "$here/grub.cfg" >"$out/loader/boot/grub/grub.cfg"
+parameters=${KERNEL:-}
+# A panel of a Raspberry Pi shows only memory from there: three pictures of 3840 x 2160.
+[ "$BOARD" != raspberry-pi ] || parameters="cma=128M $parameters"
+sed "s|@KERNEL@|$parameters|" "$here/grub.cfg" >"$out/loader/boot/grub/grub.cfg"
 tar -c --format=ustar --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 -C "$out/loader" -f "$out/loader.tar" boot
 grub-mkimage -d "$kernel/usr/lib/grub/$grub" -O "$grub" -m "$out/loader.tar" -k "$keys/loader.pub" --disable-shim-lock \
 	-o "$out/$loader" part_gpt fat ext2 normal configfile linux boot regexp loadenv probe test echo sleep reboot minicmd \
@@ -166,6 +169,11 @@ sbsign --key "$keys/secure-boot.key" --cert "$keys/secure-boot.crt" --output "$o
 openssl x509 -in "$keys/secure-boot.crt" -outform DER -out "$out/secure-boot.cer"
 grub-editenv "$out/grubenv" create
 grub-editenv "$out/grubenv" set ORDER="A B" A_OK=1 A_TRY=0 B_OK=0 B_TRY=0
+rm -rf "$out/board"
+if [ "$BOARD" = raspberry-pi ]; then
+	"$here/raspberry-pi.sh" "$kernel" "$out/board"
+	mcopy -i "$esp" "$out"/board/* ::/
+fi
 mmd -i "$esp" ::/EFI ::/EFI/BOOT ::/gopura
 mcopy -i "$esp" "$out/$loader" "::/EFI/BOOT/$loader"
 mcopy -i "$esp" "$out/grubenv" "$out/secure-boot.cer" ::/gopura/

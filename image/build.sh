@@ -3,6 +3,7 @@
 # programs of this tree. Runs as root or as a user (mmdebstrap then needs user namespaces).
 #
 #   ARCH=arm64      for boards with UEFI firmware of that architecture (default: amd64); in build/image-arm64
+#   BOARD=raspberry-pi   for a Raspberry Pi 4: the slots of arm64, and the board's own firmware; in build/image-raspberry-pi
 #   MIRROR=URL      of Debian (default: http://deb.debian.org); a date of snapshot.debian.org pins every package, with % for
 #                   debian and debian-security: http://snapshot.debian.org/archive/%/20261101T000000Z
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
@@ -16,7 +17,7 @@
 #   TRACKER=FILE    of Debian's known vulnerabilities, or its address (default: that of security-tracker.debian.org); "no" for
 #                   no report
 #   BUILDER=URI     of who builds, in provenance.json
-#   OUT=FOLDER      instead of build/image or build/image-arm64
+#   OUT=FOLDER      instead of build/image, build/image-arm64 or build/image-raspberry-pi
 #
 # Output: base.tar (the packages), tree/ (the complete root), root.squashfs and boot.img (a slot), esp.vfat, gopura.img,
 # gopura.raucb (an update to the same system), packages.txt and sbom.spdx.json: what it is made of, vulnerabilities.txt:
@@ -55,7 +56,7 @@ if [ "${FRESH:-no}" = yes ] || [ "$(cat "$out/base.key" 2>/dev/null)" != "$key" 
 		{ tail -n 20 "$out/base.log" >&2; exit 1; }
 	echo "$key" >"$out/base.key"
 fi
-image/kernel.sh "$out/kernel" busybox-static "grub-efi-$ARCH-bin" grub-common
+COMPONENTS=$components image/kernel.sh "$out/kernel" busybox-static "grub-efi-$ARCH-bin" grub-common "${board_packages[@]}"
 
 # ---- the programs, without support for a desktop window
 compiler=()

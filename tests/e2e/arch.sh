@@ -24,9 +24,14 @@ done
 [ "${found[*]}" = "gopura-x86-64 gopura-arm64" ] || fail "bundles are for ${found[*]}"
 # A terminal takes only bundles for what its own system.conf says, which image/assemble.sh sets in the same way.
 grep -qx 'compatible=gopura-x86-64' image/root/etc/rauc/system.conf || fail "system.conf names another architecture"
-status=0
-ARCH=mips image/build.sh >"$work/log" 2>&1 || status=$?
-[ $status = 1 ] && grep -q "ARCH must be amd64 or arm64, not 'mips'" "$work/log" || fail "ARCH=mips ends with $status: $(cat "$work/log")"
+refused() { # refused WHAT SETTING...: image/build.sh says so
+	status=0
+	env "${@:2}" image/build.sh >"$work/log" 2>&1 || status=$?
+	[ $status = 1 ] && grep -qF "$1" "$work/log" || fail "${*:2} ends with $status: $(cat "$work/log")"
+}
+refused "ARCH must be amd64 or arm64, not 'mips'" ARCH=mips
+refused "BOARD must be raspberry-pi or nothing, not 'beagle'" BOARD=beagle
+refused "BOARD=raspberry-pi has ARCH=arm64, not 'amd64'" BOARD=raspberry-pi ARCH=amd64
 ! grep -vE '^(#|((amd64|arm64) )?(early )?[a-zA-Z0-9_]+( [a-zA-Z0-9_]+)*$)' image/modules || fail "image/modules: a line in another form"
 
 # ---- a date of snapshot.debian.org
@@ -37,3 +42,22 @@ http://snapshot.debian.org/archive/debian/20261101T000000Z bookworm-updates main
 http://snapshot.debian.org/archive/debian-security/20261101T000000Z bookworm-security main" ] || fail "the lists of a date: $pinned"
 [ "$(apt_from http://deb.debian.org | cut -d' ' -f3 | sort -u | paste -sd' ')" = "http://deb.debian.org/debian http://deb.debian.org/debian-security" ] ||
 	fail "the lists of the mirror"
+[ "$(apt_from http://deb.debian.org 'main non-free-firmware' | cut -d' ' -f5- | sort -u)" = "main non-free-firmware" ] || fail "the components of the lists"
+
+# ---- what a Raspberry Pi starts: U-Boot is told by the device tree, and asks nobody
+command -v dtc >/dev/null || { echo "not tested, dtc is not installed: the device trees of a Raspberry Pi"; exit 0; }
+packages=$work/packages
+for file in lib/raspi-firmware/{start4.elf,fixup4.dat} lib/u-boot/rpi_arm64/u-boot.bin share/doc/raspi-firmware/copyright; do
+	install -D /dev/null "$packages/usr/$file"
+done
+trees=$packages/usr/lib/linux-image-6.1/broadcom
+mkdir -p "$trees"
+echo '/dts-v1/; / { model = "A board"; };' | dtc -q -O dtb -o "$trees/bcm2711-rpi-4-b.dtb" -
+image/raspberry-pi.sh "$packages" "$work/pi"
+tree=$work/pi/bcm2711-rpi-4-b.dtb
+[ "$(fdtget -t i "$tree" /config bootdelay)" = -2 ] || fail "U-Boot waits for a key"
+case $(fdtget "$tree" /config bootcmd) in
+'for card in 0 1 2; do if load mmc ${card}:1 ${kernel_addr_r} EFI/BOOT/BOOTAA64.EFI;'*';reset') ;;
+*) fail "U-Boot is told: $(fdtget "$tree" /config bootcmd)" ;;
+esac
+[ "$(fdtget "$tree" / model)" = "A board" ] && [ -f "$work/pi/$(sed -n 's/^kernel=//p' "$work/pi/config.txt")" ] || fail "what the board's firmware starts is not there"

@@ -6,6 +6,8 @@ cd "$(dirname "$0")/../.."
 . image/arch.sh
 out=$1 console=ttyS0
 [ "$ARCH" = amd64 ] || console=ttyAMA0
+# QEMU's Raspberry Pi restarts as soon as its watchdog is started.
+[ "$BOARD" != raspberry-pi ] || console='ttyS1 module_blacklist=bcm2835_wdt'
 tests/qemu/make-release.sh build/qemu
 made_of=(image systemd board/*.ini system/gopura.conf.example build/gopura-{kiosk,fetch,setup,health} build/qemu/release/release.json tests/qemu/lib-image.sh)
 if [ -f "$out/gopura.raucb" ] && [ -z "$(find "${made_of[@]}" -newer "$out/gopura.img" -print -quit)" ]; then
