@@ -19,6 +19,7 @@ static const struct command commands[] = {
 	{ "annotations", "export parts and pages as W3C Web Annotations, or import them",
 	  command_annotations },
 	{ "keys", "make the signing keys of a content folder", command_keys },
+	{ "delegate", "let the teams of several temples publish on one server", command_delegate },
 	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
 	  command_hierarchy },
 	{ "render", "draw reference pictures of the scan at full detail", command_render },

@@ -33,15 +33,21 @@ static bool read_hex(uint8_t *out, size_t room, size_t *size, const char *hex)
 
 /* ---- ed25519 */
 
-static bool signed_by_ed25519(const char *public, struct bytes message,
-			      const struct signature *signature, struct tuf_key_name *name)
+static bool read_ed25519(const char *public, uint8_t key[crypto_sign_PUBLICKEYBYTES],
+			 struct tuf_key_name *name)
 {
-	uint8_t key[crypto_sign_PUBLICKEYBYTES];
 	size_t size;
 
-	if (!read_hex(key, sizeof(key), &size, public) || size != sizeof(key))
+	if (!read_hex(key, crypto_sign_PUBLICKEYBYTES, &size, public) ||
+	    size != crypto_sign_PUBLICKEYBYTES)
 		return false;
-	crypto_hash_sha256(name->sha256, key, sizeof(key));
+	crypto_hash_sha256(name->sha256, key, crypto_sign_PUBLICKEYBYTES);
+	return true;
+}
+
+static bool verify_ed25519(const uint8_t key[crypto_sign_PUBLICKEYBYTES], struct bytes message,
+			   const struct signature *signature)
+{
 	return signature->size == crypto_sign_BYTES &&
 	       crypto_sign_verify_detached(signature->bytes, message.data, message.size, key) == 0;
 }
@@ -98,39 +104,61 @@ static bool verify(EVP_PKEY *key, bool pss, struct bytes message, const struct s
 	return ok;
 }
 
-static bool signed_by_pem(const char *public, bool pss, struct bytes message,
-			  const struct signature *signature, struct tuf_key_name *name)
-{
-	EVP_PKEY *key = read_pem(public);
-	const bool ok = key && (pss ? is_rsa(key) : is_p256(key)) && name_key(key, name) &&
-			verify(key, pss, message, signature);
+/* ---- keys of every kind */
 
-	EVP_PKEY_free(key);
+/* Which of the three kinds a key is. */
+enum scheme { SCHEME_NONE, SCHEME_ED25519, SCHEME_ECDSA, SCHEME_RSA };
+
+static enum scheme scheme_of(const cJSON *key)
+{
+	const char *type = text(key, "keytype"), *scheme = text(key, "scheme");
+
+	if (!type || !scheme)
+		return SCHEME_NONE;
+	if (strcmp(scheme, "ed25519") == 0 && strcmp(type, "ed25519") == 0)
+		return SCHEME_ED25519;
+	/* older files give the scheme as the type, too */
+	if (strcmp(scheme, "ecdsa-sha2-nistp256") == 0 &&
+	    (strcmp(type, "ecdsa") == 0 || strcmp(type, scheme) == 0))
+		return SCHEME_ECDSA;
+	if (strcmp(scheme, "rsassa-pss-sha256") == 0 && strcmp(type, "rsa") == 0)
+		return SCHEME_RSA;
+	return SCHEME_NONE;
+}
+
+/* Names the key and, with a signature, verifies it. */
+static bool judge(const cJSON *key, struct bytes message, const struct signature *signature,
+		  struct tuf_key_name *name)
+{
+	const char *public = text(cJSON_GetObjectItemCaseSensitive(key, "keyval"), "public");
+	const enum scheme scheme = scheme_of(key);
+	uint8_t raw[crypto_sign_PUBLICKEYBYTES];
+	EVP_PKEY *pem;
+	bool ok;
+
+	if (scheme == SCHEME_NONE || !public || strlen(public) > PUBLIC_CHARS_MAX)
+		return false;
+	if (scheme == SCHEME_ED25519)
+		return read_ed25519(public, raw, name) &&
+		       (!signature || verify_ed25519(raw, message, signature));
+	pem = read_pem(public);
+	ok = pem && (scheme == SCHEME_RSA ? is_rsa(pem) : is_p256(pem)) && name_key(pem, name) &&
+	     (!signature || verify(pem, scheme == SCHEME_RSA, message, signature));
+	EVP_PKEY_free(pem);
 	ERR_clear_error();
 	return ok;
 }
 
-/* ---- */
-
 bool tuf_key_signed(const cJSON *key, struct bytes message, const char *signature,
 		    struct tuf_key_name *name)
 {
-	const char *type = text(key, "keytype"), *scheme = text(key, "scheme");
-	const char *public = text(cJSON_GetObjectItemCaseSensitive(key, "keyval"), "public");
 	struct signature read;
 
-	if (!type || !scheme || !public || strlen(public) > PUBLIC_CHARS_MAX ||
-	    !read_hex(read.bytes, sizeof(read.bytes), &read.size, signature))
-		return false;
-	if (strcmp(scheme, "ed25519") == 0)
-		return strcmp(type, "ed25519") == 0 &&
-		       signed_by_ed25519(public, message, &read, name);
-	if (strcmp(scheme, "ecdsa-sha2-nistp256") == 0)
-		/* older files give the scheme as the type, too */
-		return (strcmp(type, "ecdsa") == 0 || strcmp(type, scheme) == 0) &&
-		       signed_by_pem(public, false, message, &read, name);
-	if (strcmp(scheme, "rsassa-pss-sha256") == 0)
-		return strcmp(type, "rsa") == 0 &&
-		       signed_by_pem(public, true, message, &read, name);
-	return false;
+	return read_hex(read.bytes, sizeof(read.bytes), &read.size, signature) &&
+	       judge(key, message, &read, name);
+}
+
+bool tuf_key_name_of(const cJSON *key, struct tuf_key_name *name)
+{
+	return judge(key, (struct bytes){ NULL, 0 }, NULL, name);
 }

@@ -22,5 +22,7 @@ struct tuf_key_name {
  * damaged or too short (RSA below 2048 bits), has signed nothing. */
 bool tuf_key_signed(const struct cJSON *key, struct bytes message, const char *signature,
 		    struct tuf_key_name *name);
+/* Sets *name to a key's name. Returns false for a key that can sign nothing, as above. */
+bool tuf_key_name_of(const struct cJSON *key, struct tuf_key_name *name);
 
 #endif

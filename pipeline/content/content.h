@@ -105,5 +105,7 @@ must_check int content_work_path(const struct content *content, const char *name
 
 /* Returns whether the model is lit; "auto" depends on whether the scans have pictures. */
 bool content_is_lit(const struct content *content, bool has_textures);
+/* Returns whether a name may be that of a role ([release] role). */
+bool content_role_is_valid(const char *name);
 
 #endif

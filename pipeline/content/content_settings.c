@@ -309,16 +309,26 @@ static bool set_target(const struct setting *setting, void *target, const char *
 	return true;
 }
 
+bool content_role_is_valid(const char *name)
+{
+	static const char *const reserved[] = { "root", "timestamp", "snapshot", "targets" };
+	const size_t size = strlen(name);
+
+	for (size_t i = 0; i < ARRAY_COUNT(reserved); i++)
+		if (strcmp(name, reserved[i]) == 0)
+			return false;
+	return size > 0 && size < CONTENT_ROLE_BYTES && *name != '.' &&
+	       !name[strspn(name, PATH_CHARS)];
+}
+
 static bool set_role(const struct setting *setting, void *target, const char *value)
 {
 	struct content *content = target;
-	const size_t size = strlen(value);
 
 	(void)setting;
-	if (size == 0 || size >= sizeof(content->tuf_role) || *value == '.' ||
-	    value[strspn(value, PATH_CHARS)])
+	if (!content_role_is_valid(value))
 		return false;
-	memcpy(content->tuf_role, value, size + 1);
+	memcpy(content->tuf_role, value, strlen(value) + 1);
 	return true;
 }
 

@@ -20,11 +20,9 @@
 
 static const char *const role_names[] = { "root", "release", "timestamp" };
 
-static int key_path(char path[PATH_MAX], const char *folder, enum meta_role role)
+static int key_path(char path[PATH_MAX], const char *folder, const char *name)
 {
-	return snprintf(path, PATH_MAX, "%s/%s.key", folder, role_names[role]) < PATH_MAX
-		       ? 0
-		       : -ENAMETOOLONG;
+	return snprintf(path, PATH_MAX, "%s/%s.key", folder, name) < PATH_MAX ? 0 : -ENAMETOOLONG;
 }
 
 static const char key_mark[] = "gopura-key-1 ";
@@ -52,7 +50,7 @@ static bool has_key(const char *folder, enum meta_role role)
 	char path[PATH_MAX];
 	struct stat status;
 
-	return key_path(path, folder, role) == 0 && lstat(path, &status) == 0 &&
+	return key_path(path, folder, role_names[role]) == 0 && lstat(path, &status) == 0 &&
 	       !(S_ISREG(status.st_mode) && status.st_size == 0);
 }
 
@@ -83,8 +81,7 @@ int keys_sync_folder(const char *path)
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
-/* Writes a complete new file or none. It is never readable by others, not even for a moment. */
-static int write_private(const char *path, const char *text)
+int keys_write_private(const char *path, const char *text)
 {
 	char aside[PATH_MAX + 8];
 	ssize_t put;
@@ -110,29 +107,29 @@ static int write_private(const char *path, const char *text)
 	return rc;
 }
 
-static int write_key(const char *folder, enum meta_role role, const uint8_t *seed)
+static int write_key(const char *folder, const char *name, const uint8_t *seed)
 {
-	char path[PATH_MAX], text[128], hex[2 * crypto_sign_SEEDBYTES + 1];
-	int rc = key_path(path, folder, role);
+	char path[PATH_MAX], text[192], hex[2 * crypto_sign_SEEDBYTES + 1];
+	int rc = key_path(path, folder, name);
 
 	if (rc < 0)
 		return rc;
 	sodium_bin2hex(hex, sizeof(hex), seed, crypto_sign_SEEDBYTES);
-	snprintf(text, sizeof(text), "%s%s %s\n", key_mark, role_names[role], hex);
-	rc = write_private(path, text);
+	snprintf(text, sizeof(text), "%s%s %s\n", key_mark, name, hex);
+	rc = keys_write_private(path, text);
 	sodium_memzero(text, sizeof(text));
 	sodium_memzero(hex, sizeof(hex));
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
-static int make_role(struct signing_key *key, const char *folder, enum meta_role role)
+static int make_key(struct signing_key *key, const char *folder, const char *name)
 {
 	uint8_t seed[crypto_sign_SEEDBYTES];
 	int rc;
 
 	randombytes_buf(seed, sizeof(seed));
 	crypto_sign_seed_keypair(key->public_key, key->secret, seed);
-	rc = write_key(folder, role, seed);
+	rc = write_key(folder, name, seed);
 	sodium_memzero(seed, sizeof(seed));
 	return rc;
 }
@@ -196,12 +193,12 @@ int keys_decode(struct signing_key *out, struct bytes file, const char *role)
 	return rc;
 }
 
-static int read_key(struct signing_key *key, const char *folder, enum meta_role role)
+static int read_key(struct signing_key *key, const char *folder, const char *name)
 {
 	char path[PATH_MAX];
 	struct buffer file;
 	struct stat stat_of;
-	int rc = key_path(path, folder, role);
+	int rc = key_path(path, folder, name);
 
 	if (rc < 0)
 		return rc;
@@ -213,16 +210,27 @@ static int read_key(struct signing_key *key, const char *folder, enum meta_role 
 		return -EPERM;
 	}
 	if (rc == 0)
-		rc = keys_decode(key, buffer_bytes(&file), role_names[role]);
+		rc = keys_decode(key, buffer_bytes(&file), name);
 	if (file.data)
 		sodium_memzero(file.data, file.size);
 	buffer_finish(&file);
 	return rc < 0 ? complain(path, rc) : 0;
 }
 
+int keys_named(struct signing_key *out, const char *folder, const char *name)
+{
+	char path[PATH_MAX];
+	int rc = sodium_init() < 0 ? -EIO : key_path(path, folder, name);
+
+	if (rc == 0)
+		rc = access(path, F_OK) == 0 ? read_key(out, folder, name)
+					     : make_key(out, folder, name);
+	return rc;
+}
+
 int keys_read_root_key(struct signing_key *out, const char *folder)
 {
-	return has_key(folder, META_ROOT) ? read_key(out, folder, META_ROOT) : -ENOENT;
+	return has_key(folder, META_ROOT) ? read_key(out, folder, role_names[META_ROOT]) : -ENOENT;
 }
 
 /* Keys are created in this order. So a folder that has a later key without an earlier one is not an
@@ -251,8 +259,8 @@ static int complete(const char *folder)
 		rc = make_folders(folder);
 	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++)
 		rc = has_key(folder, (enum meta_role)role)
-			     ? read_key(&keys[role], folder, (enum meta_role)role)
-			     : make_role(&keys[role], folder, (enum meta_role)role);
+			     ? read_key(&keys[role], folder, role_names[role])
+			     : make_key(&keys[role], folder, role_names[role]);
 	if (rc == 0)
 		rc = keys_sync_folder(folder);
 	if (rc == 0)
@@ -350,9 +358,9 @@ int keys_load(struct publisher_keys *out, const char *folder)
 		return -EIO;
 	rc = load_root(&out->trust, folder);
 	if (rc == 0)
-		rc = read_key(&out->release, folder, META_RELEASE);
+		rc = read_key(&out->release, folder, role_names[META_RELEASE]);
 	if (rc == 0)
-		rc = read_key(&out->timestamp, folder, META_TIMESTAMP);
+		rc = read_key(&out->timestamp, folder, role_names[META_TIMESTAMP]);
 	if (rc == 0 && (!role_has(&out->trust.roles[META_RELEASE], &out->release) ||
 			!role_has(&out->trust.roles[META_TIMESTAMP], &out->timestamp))) {
 		log_error("pipeline", "%s: the newest root does not name these keys", folder);

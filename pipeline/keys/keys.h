@@ -39,6 +39,12 @@ must_check int keys_sync_parent(const char *folder);
 must_check int keys_load(struct publisher_keys *out, const char *folder);
 void keys_finish(struct publisher_keys *keys); /* Wipes the keys. NULL is fine. */
 
+/* Reads NAME.key, a key besides those three, or makes it where there is none. The caller wipes
+ * *out. Errors as of keys_load. */
+must_check int keys_named(struct signing_key *out, const char *folder, const char *name);
+/* Writes a complete new file or none. It is never readable by others, not even for a moment. */
+must_check int keys_write_private(const char *path, const char *text);
+
 /* Reads root.key alone. -ENOENT: it is not in the folder. Other errors are logged. */
 must_check int keys_read_root_key(struct signing_key *out, const char *folder);
 

@@ -364,7 +364,10 @@ static int open_at(struct publisher_keys *out, char folder[PATH_MAX], const char
 	int rc;
 
 	memcpy(chosen, folder, PATH_MAX);
-	move_old(folder, content);
+	if (content[0])
+		move_old(folder, content);
+	if (!out && !is_given && mkdir(folder, 0700) < 0 && errno != EEXIST)
+		return complain(folder, -errno, "");
 	rc = out ? load_or_make(out, folder, made) : 0;
 	if (rc == 0 && !is_given && strcmp(folder, chosen) == 0 &&
 	    (read_owner(owner, folder) < 0 || strcmp(owner, content) != 0)) {
@@ -372,7 +375,7 @@ static int open_at(struct publisher_keys *out, char folder[PATH_MAX], const char
 		if (rc < 0)
 			keys_finish(out);
 	}
-	if (rc == 0)
+	if (rc == 0 && content[0])
 		judge_place(folder, content);
 	return rc;
 }
@@ -380,11 +383,11 @@ static int open_at(struct publisher_keys *out, char folder[PATH_MAX], const char
 int keys_open(struct publisher_keys *out, char folder[PATH_MAX], const char *content_folder,
 	      const char *given, bool *made)
 {
-	char content[PATH_MAX], base[PATH_MAX];
+	char content[PATH_MAX] = "", base[PATH_MAX];
 	bool is_new = false;
 	int lock, rc;
 
-	if (!realpath(content_folder, content))
+	if (content_folder && !realpath(content_folder, content))
 		return complain(content_folder, -errno, "");
 	rc = given ? take_given(folder, given) : default_base(base);
 	if (rc == 0 && !given)

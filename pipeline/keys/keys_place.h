@@ -18,10 +18,11 @@
 
 #include "pipeline/keys/keys.h"
 
-/* Finds the keys of a content folder, moves or creates them if necessary, and reads them. out NULL:
- * finds their folder alone, for a museum that signs with other keys (signing.ini). `given` is the
- * value of --keys, or NULL. `folder` gets their place. *made says whether they are new; it
- * may be NULL. Negative errno; errors are logged. Call keys_finish after success. */
+/* Finds the keys of a content folder (NULL: of none, and `given` says where they are), moves or
+ * creates them if necessary, and reads them. out NULL: finds their folder alone, for a museum that
+ * signs with other keys (signing.ini). `given` is the value of --keys, or NULL. `folder` gets their
+ * place. *made says whether they are new; it may be NULL. Negative errno; errors are logged. Call
+ * keys_finish after success. */
 must_check int keys_open(struct publisher_keys *out, char folder[PATH_MAX],
 			 const char *content_folder, const char *given, bool *made);
 

@@ -10,6 +10,11 @@
  * already it stays. -ENOENT: root.key is not in the folder. Errors are logged. */
 must_check int keys_make_tuf_root(const char *folder, const struct publisher_keys *keys);
 
+/* The same for a museum that has several temples on one server: makes snapshot.key too, if it is
+ * missing, and a root whose snapshots that key may sign as well as the keys of the targets. Where
+ * there is a root that does not name it, makes the next one. */
+must_check int keys_make_museum_root(const char *folder, const struct publisher_keys *keys);
+
 /* Reads tuf/VERSION.root.json into *out, cleared first. -ENOENT: there is none. */
 must_check int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version);
 /* Returns the last version of tuf/N.root.json that is there, counted from 1 on; 0: none. */

@@ -224,25 +224,28 @@ static int check_snapshot(const struct tuf_folder *folder)
 	return -EKEYREJECTED;
 }
 
-static int stage_release(struct next *next, const struct release *what, struct bytes release_file,
-			 uint32_t *snapshot)
+/* Stages the file that names the release, or all delegations, and the snapshot that names it.
+ * content is taken. */
+static int stage_naming(struct next *next, uint32_t version, int64_t expires_s, cJSON *content,
+			uint32_t *snapshot)
 {
 	const struct tuf_file none = { .json = NULL };
 	const struct tuf_folder *folder = &next->folder;
 	const uint32_t last = last_snapshot(folder);
 	int rc = check_snapshot(folder);
 
-	*snapshot = last + 1 > what->sequence ? last + 1 : (uint32_t)what->sequence;
-	if (rc == 0)
-		rc = stage(next, TUF_TARGETS, (uint32_t)what->sequence,
-			   naming_content(folder, what, release_file));
+	*snapshot = last + 1 > version ? last + 1 : version;
+	if (rc < 0)
+		cJSON_Delete(content);
+	else
+		rc = stage(next, TUF_TARGETS, version, content);
 	if (rc == 0)
 		rc = stage(
 			next, TUF_SNAPSHOT, *snapshot,
 			naming(next_content(folder->snapshot_is_signed ? &folder->snapshot : &none,
-					    TUF_SNAPSHOT, *snapshot, what->expires_s),
-			       tuf_folder_naming_name(folder), (uint32_t)what->sequence,
-			       &next->files[TUF_TARGETS], !next->unsigned_folder));
+					    TUF_SNAPSHOT, *snapshot, expires_s),
+			       tuf_folder_naming_name(folder), version, &next->files[TUF_TARGETS],
+			       !next->unsigned_folder));
 	return rc;
 }
 
@@ -348,7 +351,8 @@ static int make_all(struct next *next, const struct release *what, struct bytes 
 			return complain(folder->place.release, "tuf", -ERANGE);
 		rc = put_target(&folder->place, release_file);
 		if (rc == 0)
-			rc = stage_release(next, what, release_file, &snapshot);
+			rc = stage_naming(next, (uint32_t)what->sequence, what->expires_s,
+					  naming_content(folder, what, release_file), &snapshot);
 	}
 	return rc < 0 ? rc : stage_timestamp(next, snapshot);
 }
@@ -365,6 +369,19 @@ static int begin(struct next *next, const struct tuf_place *place, int *fd)
 	return rc < 0 ? rc : tuf_folder_open(&next->folder, place);
 }
 
+/* Writes what was made if rc is 0, unlocks and frees. Returns rc, or what failed. */
+static int end(struct next *next, int fd, int rc)
+{
+	if (rc == 0)
+		rc = copy_roots(&next->folder.place);
+	if (rc == 0)
+		rc = next->unsigned_folder ? keep_all(next) : put_all(next);
+	finish(next);
+	if (fd >= 0)
+		close(fd);
+	return rc;
+}
+
 int release_tuf_write(const struct tuf_place *place, const struct release *what,
 		      struct bytes release_file, int64_t timestamp_life_s,
 		      const char *unsigned_folder)
@@ -375,14 +392,39 @@ int release_tuf_write(const struct tuf_place *place, const struct release *what,
 
 	if (rc == 0)
 		rc = make_all(&next, what, release_file);
+	return end(&next, fd, rc);
+}
+
+/* ---- targets.json without a release */
+
+static int change_all(struct next *next, const struct tuf_change *change)
+{
+	const struct tuf_folder *folder = &next->folder;
+	const uint32_t version = folder->top_version + 1;
+	cJSON *content = next_content(&folder->top, TUF_TARGETS, version, change->expires_s);
+	uint32_t snapshot;
+	int rc = object_in(content, "targets") ? 0 : -ENOMEM;
+
 	if (rc == 0)
-		rc = copy_roots(place);
+		rc = change->edit(change->context, folder, content);
+	if (rc < 0) {
+		cJSON_Delete(content);
+		return rc;
+	}
+	rc = stage_naming(next, version, change->expires_s, content, &snapshot);
+	return rc < 0 ? rc : stage_timestamp(next, snapshot);
+}
+
+int release_tuf_change(const struct tuf_place *place, const struct tuf_change *change,
+		       int64_t timestamp_life_s, const char *unsigned_folder)
+{
+	struct next next = { .unsigned_folder = unsigned_folder,
+			     .timestamp_life_s = timestamp_life_s };
+	int fd, rc = begin(&next, place, &fd);
+
 	if (rc == 0)
-		rc = unsigned_folder ? keep_all(&next) : put_all(&next);
-	finish(&next);
-	if (fd >= 0)
-		close(fd);
-	return rc;
+		rc = change_all(&next, change);
+	return end(&next, fd, rc);
 }
 
 /* ---- signatures that were made elsewhere */
@@ -441,24 +483,45 @@ static int read_staged(struct next *next, const char *staged_folder)
 	return rc == -ENOENT ? complain(staged_folder, name, rc) : rc;
 }
 
+/* Who may sign a release often has no key of the files that all temples share. */
+static int sign_shared(struct next *next)
+{
+	static const enum tuf_type shared[] = { TUF_SNAPSHOT, TUF_TIMESTAMP };
+	int rc = 0;
+
+	for (size_t i = 0; i < ARRAY_COUNT(shared) && rc == 0; i++) {
+		struct tuf_staged *staged = &next->files[shared[i]];
+
+		if (!staged->name[0] || tuf_staged_is_signed(staged))
+			continue;
+		rc = tuf_staged_sign(staged, &next->signing);
+		if (rc == 0)
+			rc = tuf_staged_write(staged);
+	}
+	return rc;
+}
+
+/* All that lack signatures are named, not only the first. */
+static int check_staged(const struct next *next)
+{
+	int rc = 0;
+
+	for (size_t i = 0; i < ARRAY_COUNT(order); i++)
+		if (next->files[order[i]].name[0] && tuf_staged_check(&next->files[order[i]]) < 0)
+			rc = -EKEYREJECTED;
+	return rc;
+}
+
 int release_tuf_add_signatures(const struct tuf_place *place, const char *staged_folder)
 {
 	struct next next = { .unsigned_folder = NULL };
-	int fd, rc = begin(&next, place, &fd), lacking = 0;
+	int fd, rc = begin(&next, place, &fd);
 
 	if (rc == 0)
 		rc = read_staged(&next, staged_folder);
-	for (size_t i = 0; i < ARRAY_COUNT(order) && rc == 0; i++)
-		if (next.files[order[i]].name[0] && tuf_staged_check(&next.files[order[i]]) < 0)
-			lacking = -EKEYREJECTED;
 	if (rc == 0)
-		rc = lacking;
+		rc = sign_shared(&next);
 	if (rc == 0)
-		rc = copy_roots(place);
-	if (rc == 0)
-		rc = put_all(&next);
-	finish(&next);
-	if (fd >= 0)
-		close(fd);
-	return rc;
+		rc = check_staged(&next);
+	return end(&next, fd, rc);
 }

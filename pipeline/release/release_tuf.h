@@ -27,9 +27,24 @@ must_check int release_tuf_write(const struct tuf_place *place, const struct rel
 				 struct bytes release_file, int64_t timestamp_life_s,
 				 const char *unsigned_folder);
 
+/* What becomes of targets.json besides a release: edit changes its next content, which has all that
+ * the last one had, while the folder is locked. Returns 0 or a negative errno, logged; nothing is
+ * written then. */
+struct tuf_change {
+	int (*edit)(void *context, const struct tuf_folder *folder, struct cJSON *content);
+	void *context;
+	int64_t expires_s; /* of targets.json and the snapshot, since 1970 */
+};
+
+/* Signs the next version of targets.json, with snapshot and timestamp; the rest as
+ * release_tuf_write. place has no role. */
+must_check int release_tuf_change(const struct tuf_place *place, const struct tuf_change *change,
+				  int64_t timestamp_life_s, const char *unsigned_folder);
+
 /* Publishes what was staged in a folder, with the signatures of NAME.*.sig beside each file: see
- * tuf_staged_read. -EKEYREJECTED: a file has too few signatures; nothing is published then.
- * -ESTALE: something else was published since it was staged. Errors are logged. */
+ * tuf_staged_read. Where snapshot and timestamp have too few, those whom signing.ini names sign
+ * them. -EKEYREJECTED: a file has too few signatures; nothing is published then. -ESTALE: something
+ * else was published since it was staged. Errors are logged. */
 must_check int release_tuf_add_signatures(const struct tuf_place *place, const char *staged_folder);
 
 #endif

@@ -172,26 +172,26 @@ static int open_top(struct tuf_folder *folder)
 				      tuf_root_role(&folder->root, TUF_TARGETS));
 }
 
-static const cJSON *delegations(const struct tuf_folder *folder)
+const cJSON *tuf_folder_delegations(const struct tuf_folder *folder)
 {
 	return cJSON_GetObjectItemCaseSensitive(folder->top.content, "delegations");
 }
 
-static const cJSON *delegated(const struct tuf_folder *folder)
+const cJSON *tuf_folder_delegated(const struct tuf_folder *folder, const char *name)
 {
-	const cJSON *role;
+	const cJSON *all = tuf_folder_delegations(folder), *role;
 
-	cJSON_ArrayForEach(role, cJSON_GetObjectItemCaseSensitive(delegations(folder), "roles"))
+	cJSON_ArrayForEach(role, cJSON_GetObjectItemCaseSensitive(all, "roles"))
 	{
 		if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(role, "name")),
-			   folder->place.role) == 0)
+			   name) == 0)
 			return role;
 	}
 	return NULL;
 }
 
-/* Returns whether terminals that look for the target come to the role: docs/tuf.md. */
-static bool has_path(const cJSON *role, const char *target)
+/* As terminals judge it: docs/tuf.md. */
+bool tuf_folder_role_has_path(const cJSON *role, const char *target)
 {
 	const cJSON *paths = cJSON_GetObjectItemCaseSensitive(role, "paths"), *pattern;
 
@@ -206,12 +206,20 @@ static bool has_path(const cJSON *role, const char *target)
 void tuf_folder_naming_keys(const struct tuf_folder *folder, const cJSON **keys, const cJSON **role)
 {
 	if (has_role(folder)) {
-		*keys = cJSON_GetObjectItemCaseSensitive(delegations(folder), "keys");
-		*role = delegated(folder);
+		*keys = cJSON_GetObjectItemCaseSensitive(tuf_folder_delegations(folder), "keys");
+		*role = tuf_folder_delegated(folder, folder->place.role);
 	} else {
 		*keys = tuf_root_keys(&folder->root);
 		*role = tuf_root_role(&folder->root, TUF_TARGETS);
 	}
+}
+
+int tuf_folder_read_role(const struct tuf_folder *folder, const char *name, struct tuf_file *out,
+			 uint32_t *version)
+{
+	*out = (struct tuf_file){ .json = NULL };
+	*version = snapshot_version(folder, name);
+	return parse_version(folder, *version, name, TUF_TARGETS, out);
 }
 
 static int open_own(struct tuf_folder *folder)
@@ -220,17 +228,16 @@ static int open_own(struct tuf_folder *folder)
 	int rc;
 
 	tuf_folder_naming_keys(folder, &keys, &role);
-	if (!role || !has_path(role, tuf_folder_target(&folder->place))) {
+	if (!role || !tuf_folder_role_has_path(role, tuf_folder_target(&folder->place))) {
 		log_error("pipeline",
-			  "%s/tuf: targets.json does not delegate the path to %s; its owner has to "
-			  "add that role with your keys and the path %s",
+			  "%s/tuf: targets.json does not delegate the path to %s; the museum has "
+			  "to add that role with your keys (gopura-content delegate) and the path "
+			  "%s",
 			  folder->place.release, folder->place.role,
 			  tuf_folder_target(&folder->place));
 		return -ENOENT;
 	}
-	folder->own_version = snapshot_version(folder, folder->place.role);
-	rc = parse_version(folder, folder->own_version, folder->place.role, TUF_TARGETS,
-			   &folder->own);
+	rc = tuf_folder_read_role(folder, folder->place.role, &folder->own, &folder->own_version);
 	return rc < 0 ? rc : check_targets(folder, &folder->own, folder->place.role, keys, role);
 }
 
@@ -315,10 +322,14 @@ int tuf_folder_at(const struct tuf_folder *folder, uint64_t version, struct rele
 	if (rc == 0 && !naming.json)
 		rc = -ENOENT;
 	if (rc == 0 && (rc = tuf_file_verify(&naming, keys, role)) < 0)
-		complain(folder, name, rc,
-			 "that version is not signed with the keys of the newest root");
+		log_warn("pipeline",
+			 "%s/tuf: version %" PRIu64 " of %s.json is not signed with the keys that "
+			 "may sign it now",
+			 folder->place.release, version, name);
 	if (rc == 0)
 		rc = read_named(folder, &naming, out, file);
+	if (rc == 0 && out->sequence != version)
+		rc = -ENOENT; /* delegations have changed, not the release */
 	tuf_file_finish(&naming);
 	return rc;
 }

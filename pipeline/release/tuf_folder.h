@@ -47,11 +47,23 @@ const char *tuf_folder_naming_name(const struct tuf_folder *folder);
 void tuf_folder_naming_keys(const struct tuf_folder *folder, const struct cJSON **keys,
 			    const struct cJSON **role);
 
+/* What targets.json delegates, as the specification says; NULL: nothing. */
+const struct cJSON *tuf_folder_delegations(const struct tuf_folder *folder);
+/* The role of that name among them, or NULL. */
+const struct cJSON *tuf_folder_delegated(const struct tuf_folder *folder, const char *name);
+/* Returns whether terminals that look for the target come to the role. */
+bool tuf_folder_role_has_path(const struct cJSON *role, const char *target);
+/* Parses the last file of a role, whoever signed it. *out stays empty where it has published none.
+ * *version is what the snapshot says, 0: none. Errors are logged. */
+must_check int tuf_folder_read_role(const struct tuf_folder *folder, const char *name,
+				    struct tuf_file *out, uint32_t *version);
+
 /* Reads the release that is published now into *out and its release.json into *file, cleared first.
  * -ENOENT: none is. Other errors are logged. */
 must_check int tuf_folder_current(const struct tuf_folder *folder, struct release *out,
 				  struct buffer *file);
-/* The same for an earlier version of the file that names the release. -ENOENT: there is none. */
+/* The same for an earlier version of the file that names the release. -ENOENT: there is none, or
+ * that version was made for something else and has the release of an earlier one. */
 must_check int tuf_folder_at(const struct tuf_folder *folder, uint64_t version, struct release *out,
 			     struct buffer *file);
 

@@ -75,6 +75,18 @@ int tuf_staged_write(struct tuf_staged *staged)
 	return tuf_write_signed(&staged->file, buffer_bytes(&staged->message), staged->signatures);
 }
 
+bool tuf_staged_is_signed(const struct tuf_staged *staged)
+{
+	struct tuf_file file = { 0 };
+	const char *why;
+	const bool is =
+		tuf_file_parse(&file, buffer_bytes(&staged->file), staged->type, &why) == 0 &&
+		tuf_file_verify(&file, staged->keys, staged->role) == 0;
+
+	tuf_file_finish(&file);
+	return is;
+}
+
 int tuf_staged_check(const struct tuf_staged *staged)
 {
 	struct tuf_file file = { 0 };
@@ -192,5 +204,41 @@ int tuf_staged_read(struct tuf_staged *out, const struct tuf_folder *folder,
 	buffer_finish(&file);
 	if (rc < 0)
 		out->name[0] = '\0';
+	return rc;
+}
+
+/* Takes ROLE out of VERSION.ROLE.json. Returns false if it is another name. */
+static bool role_in_name(const char *name, const char **role, int *bytes)
+{
+	const size_t size = strlen(name), digits = strspn(name, "0123456789");
+
+	*role = name + digits + 1;
+	*bytes = (int)(size - digits - 1 - strlen(".json"));
+	return digits > 0 && name[digits] == '.' && *bytes > 0 &&
+	       strcmp(name + size - strlen(".json"), ".json") == 0 &&
+	       strncmp(*role, "snapshot.json", strlen("snapshot.json")) != 0;
+}
+
+int tuf_staged_role(char *out, size_t out_bytes, const char *staged_folder)
+{
+	const struct dirent *entry;
+	DIR *all = opendir(staged_folder);
+	int bytes, rc = all ? 0 : complain(staged_folder, "", -errno, NULL);
+	const char *role;
+
+	out[0] = '\0';
+	while (rc == 0 && (entry = readdir(all))) {
+		if (!role_in_name(entry->d_name, &role, &bytes))
+			continue;
+		if (out[0] && (strncmp(out, role, (size_t)bytes) != 0 || out[bytes]))
+			rc = complain(staged_folder, entry->d_name, -EINVAL,
+				      "what two roles signed lies in one folder; use one for each");
+		else if (snprintf(out, out_bytes, "%.*s", bytes, role) >= (int)out_bytes)
+			rc = complain(staged_folder, entry->d_name, -ENAMETOOLONG, NULL);
+	}
+	if (all)
+		closedir(all);
+	if (strcmp(out, tuf_type_names[TUF_TARGETS]) == 0)
+		out[0] = '\0';
 	return rc;
 }

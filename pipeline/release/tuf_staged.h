@@ -23,12 +23,17 @@ must_check int tuf_staged_init(struct tuf_staged *out, const struct tuf_folder *
  * -ENOENT: there is none; other errors are logged. */
 must_check int tuf_staged_read(struct tuf_staged *out, const struct tuf_folder *folder,
 			       const char *staged_folder, enum tuf_type type, uint32_t version);
+/* Finds whose targets are staged in a folder, by the name of VERSION.ROLE.json; "" for those of the
+ * top, or none. -EINVAL: of several; errors are logged. */
+must_check int tuf_staged_role(char *out, size_t out_bytes, const char *staged_folder);
 void tuf_staged_finish(struct tuf_staged *staged); /* Zeroed is fine. */
 
 /* Has the signers of the keys' folder sign it. Errors are logged. */
 must_check int tuf_staged_sign(struct tuf_staged *staged, const struct signing *signing);
 /* Makes staged->file of what there is. */
 must_check int tuf_staged_write(struct tuf_staged *staged);
+/* Returns whether staged->file has enough signatures. */
+bool tuf_staged_is_signed(const struct tuf_staged *staged);
 /* Returns 0 if staged->file has enough signatures; else -EKEYREJECTED, logged. */
 must_check int tuf_staged_check(const struct tuf_staged *staged);
 /* Writes staged->file and its bytes to be signed into a folder, which is made. Errors are logged.

@@ -1,12 +1,11 @@
 #!/bin/bash
 # Releases in the form of The Update Framework alone: what was published in both forms goes over; other keys sign than
 # those of gopura, ECDSA and RSA, by a program and in two steps, with no key of gopura left; a signature that is missing
-# or wrong publishes nothing; two temples share a server, each with a role and keys of its own, and a terminal shows its own.
+# or wrong publishes nothing.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 . tests/e2e/lib-content.sh
-. tests/e2e/lib-server.sh
 . tests/e2e/lib-tuf.sh
 tuf_work build/e2e/tuf_alone
 deps=$PWD/../shared/conformance/tuf/deps
@@ -108,43 +107,3 @@ P
 	try "python-tuf" verify "$release" --trust "$keys/tuf/1.root.json"
 	says 'release 6 '
 fi
-
-# ---- two temples on one server
-release=$work/shared museum=$work/museum
-cp -a "$work/content" "$work/bayon"
-try keys keys "$work/content" --keys "$museum" --tuf
-for temple in angkor bayon; do
-	printf 'gopura-key-1 release %s\n' "$(openssl rand -hex 32)" >"$museum/$temple.key"
-	mkdir -p "$work/$temple.keys"
-	cp -a "$museum/tuf" "$museum/release.key" "$museum/timestamp.key" "$work/$temple.keys/"
-	cp "$museum/$temple.key" "$work/$temple.keys/"
-	chmod 600 "$work/$temple.keys"/*.key
-	printf '[keys]\ntargets = %s.key\n' "$temple" >"$work/$temple.keys/signing.ini"
-done
-tests/e2e/tuf_sign.py "$museum" "$release" temples angkor bayon
-own "$work/content" 'metadata = tuf\ntarget = angkor/release.json\nrole = angkor\n'
-own "$work/bayon" 'metadata = tuf\ntarget = bayon/release.json\nrole = bayon\n'
-sed -i 's/^name = .*/name = Bayon/' "$work/bayon/temple.ini"
-try "angkor" publish "$work/content" --out "$release" --keys "$work/angkor.keys"
-try "bayon" publish "$work/bayon" --out "$release" --keys "$work/bayon.keys"
-try "bayon" publish "$work/bayon" --out "$release" --keys "$work/bayon.keys" --comment "of bayon alone"
-own "$work/bayon" 'metadata = tuf\ntarget = angkor/release.json\nrole = bayon\n'
-refuses "another's path" publish "$work/bayon" --out "$release" --keys "$work/bayon.keys" --comment stolen
-says 'does not delegate the path to bayon'
-own "$work/bayon" 'metadata = tuf\ntarget = angkor/release.json\nrole = angkor\n'
-refuses "another's role" publish "$work/bayon" --out "$release" --keys "$work/bayon.keys" --comment stolen
-says 'by none of the keys'
-for temple in angkor bayon; do
-	try "$temple" verify "$release" --trust "$museum/tuf/1.root.json" --target "$temple/release.json"
-done
-says 'release 2 of "Bayon"'
-refuses "no path" verify "$release" --trust "$museum/tuf/1.root.json"
-says 'there is no target release.json'
-start_server "$release" "$work/server"
-url=$server_url ca=$server_ca
-build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 --state "$work/state" \
-	--trust "$museum/tuf/1.root.json" --target bayon/release.json 2>"$work/bayon.log" &
-pids[bayon]=$!
-wait_for 60 "release on the terminal of Bayon" shown bayon 1
-grep -q 'release 2 is published: of bayon alone' "$work/bayon.log" || { cat "$work/bayon.log"; fail "not Bayon's release"; }
-stop_terminal bayon

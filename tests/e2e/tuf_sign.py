@@ -8,7 +8,6 @@
     rename FILE FILE           the same content under another name
     chain                      makes timestamp and snapshot name the files that are there
     delegate ROLE              the targets become those of a role whose key is KEYS/ROLE.key
-    temples ROLE...            a new repository whose targets delegate ROLE/* to each ROLE, with the key KEYS/ROLE.key
     adopt ROLE=FILE...         the next root, in which the only key of ROLE is the public key of a file in PEM
     root MEMBER=JSON...        the next root, signed by root.key, into KEYS/tuf and RELEASE/tuf
 
@@ -121,27 +120,6 @@ def delegate(role):
     chain()
 
 
-def expiring(kind):
-    return {"_type": kind, "spec_version": "1.0.34", "version": 1, "expires": "2040-01-01T00:00:00Z"}
-
-
-def temples(*roles):
-    own = {role: Key(keys / f"{role}.key") for role in roles}
-    delegations = {
-        "keys": {key.id: key.entry for key in own.values()},
-        "roles": [
-            {"name": role, "keyids": [own[role].id], "threshold": 1, "paths": [f"{role}/*"], "terminating": True}
-            for role in roles
-        ],
-    }
-    tuf.mkdir(parents=True, exist_ok=True)
-    put(tuf / "1.targets.json", signed({**expiring("targets"), "targets": {}, "delegations": delegations}, "release"))
-    meta = {"targets.json": describe(tuf / "1.targets.json", 1)}
-    put(tuf / "1.snapshot.json", signed({**expiring("snapshot"), "meta": meta}, "release"))
-    meta = {"snapshot.json": describe(tuf / "1.snapshot.json", 1)}
-    put(tuf / "timestamp.json", signed({**expiring("timestamp"), "meta": meta}, "timestamp"))
-
-
 # Signed by root.key; into KEYS/tuf alone, from where `publish` copies it.
 def adopt(*pairs):
     last = max((keys / "tuf").glob("*.root.json"), key=lambda path: int(path.name.split(".")[0]))
@@ -183,5 +161,5 @@ def root(*changes):
 
 command, *arguments = sys.argv[3:]
 commands = {"set": set_members, "rename": rename, "chain": chain, "delegate": delegate, "root": root}
-commands |= {"temples": temples, "adopt": adopt}
+commands |= {"adopt": adopt}
 commands[command](*arguments)

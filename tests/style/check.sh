@@ -68,11 +68,11 @@ is_public() {
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import start_view work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
 	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;
-	pipeline/release/*) names="publish_content verify inspect inspect_release release_look" ;;
+	pipeline/release/*) names="delegation publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;
 	pipeline/deform/*) names="deform deform_plan mesh_obj" ;;
-	pipeline/keys/*) names="keys keys_place keys_tuf signing" ;;
+	pipeline/keys/*) names="keys keys_place keys_team keys_tuf signing" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;
 	*) return 0 ;;

@@ -7,11 +7,13 @@
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "tests/check.h"
 #include "tuf/canonical.h"
 #include "tuf/private_key.h"
+#include "tuf/public_key.h"
 
 static const struct bytes message = { (const uint8_t *)"{\"version\":1}", 13 };
 
@@ -137,11 +139,86 @@ static void writes_line_ends_as_json_does(void **state)
 	cJSON_Delete(signatures);
 }
 
+/* What openssl writes of a key is read, and has made that key's signature. */
+static void reads_public_key(EVP_PKEY *key)
+{
+	struct pair pair = pair_of(key);
+	struct tuf_public_key read, again;
+	struct tuf_key_name name;
+	struct buffer signature, json;
+	char hex[2049], *text;
+
+	buffer_init(&signature, 1024);
+	CHECK(tuf_private_sign(&signature, buffer_bytes(&pair.private_key), message) == 0);
+	for (size_t i = 0; i < signature.size; i++)
+		snprintf(hex + 2 * i, 3, "%02x", signature.data[i]);
+	CHECK(tuf_public_key_read(&read, buffer_bytes(&pair.public_key)) == 0);
+	CHECK(tuf_key_signed(read.entry, message, hex, &name));
+	CHECK(memcmp(&name, &read.name, sizeof(name)) == 0);
+	/* the entry, as other tools write it to a file, is the same key */
+	text = cJSON_Print(read.entry);
+	buffer_init(&json, 1 << 14);
+	buffer_put_text(&json, text);
+	CHECK(tuf_public_key_read(&again, buffer_bytes(&json)) == 0);
+	CHECK(strcmp(read.id, again.id) == 0);
+	tuf_public_key_finish(&again);
+	CHECK(tuf_public_key_read(&again, buffer_bytes(&pair.private_key)) == -EPERM);
+	cJSON_free(text);
+	tuf_public_key_finish(&read);
+	tuf_public_key_finish(&again);
+	buffer_finish(&json);
+	buffer_finish(&signature);
+	finish(&pair);
+}
+
+static void reads_public_keys(void **state)
+{
+	static const char *const wrong[] = {
+		"",
+		"no key",
+		"{}",
+		"-----BEGIN PUBLIC KEY-----\nAA==\n-----END PUBLIC KEY-----\n",
+		"{\"keytype\":\"ed25519\",\"scheme\":\"ed25519\",\"keyval\":{}}",
+	};
+	static const char short_key[] = "{\"keytype\":\"ed25519\",\"scheme\":\"ed25519\","
+					"\"keyval\":{\"public\":\"00ff\"}}";
+	struct pair p384 = pair_of(EVP_EC_gen("P-384")), rsa = pair_of(EVP_RSA_gen(1024));
+	const uint8_t raw[32] = { 1, 2, 3 };
+	struct tuf_public_key key;
+	struct buffer pem;
+
+	(void)state;
+	reads_public_key(EVP_PKEY_Q_keygen(NULL, NULL, "ED25519"));
+	reads_public_key(EVP_EC_gen("P-256"));
+	reads_public_key(EVP_RSA_gen(2048));
+	for (size_t i = 0; i < ARRAY_COUNT(wrong); i++)
+		CHECK(tuf_public_key_read(&key, (struct bytes){ (const uint8_t *)wrong[i],
+								strlen(wrong[i]) }) == -EBADMSG);
+	CHECK(tuf_public_key_read(&key, (struct bytes){ (const uint8_t *)short_key,
+							strlen(short_key) }) == -EOPNOTSUPP);
+	tuf_public_key_finish(&key);
+	CHECK(tuf_public_key_read(&key, buffer_bytes(&p384.public_key)) == -EOPNOTSUPP);
+	tuf_public_key_finish(&key);
+	CHECK(tuf_public_key_read(&key, buffer_bytes(&rsa.public_key)) == -EOPNOTSUPP);
+	tuf_public_key_finish(&key);
+	buffer_init(&pem, 1000);
+	CHECK(tuf_public_key_write(&pem, raw) == 0);
+	CHECK(tuf_public_key_read(&key, buffer_bytes(&pem)) == 0);
+	CHECK(strncmp(cJSON_GetObjectItem(cJSON_GetObjectItem(key.entry, "keyval"), "public")
+			      ->valuestring,
+		      "01020300", 8) == 0);
+	tuf_public_key_finish(&key);
+	buffer_finish(&pem);
+	finish(&p384);
+	finish(&rsa);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(signs_with_ecdsa_and_rsa),
 		cmocka_unit_test(refuses_keys_that_are_none),
+		cmocka_unit_test(reads_public_keys),
 		cmocka_unit_test(writes_line_ends_as_json_does),
 	};
 
