@@ -26,17 +26,17 @@ static void add_found(cJSON *json, const struct diagnostics *found)
 }
 
 /* Nothing was published: *before stays empty. */
-static int read_before(cJSON *json, struct buffer *before, const char *folder)
+static int read_before(cJSON *json, struct buffer *before, const struct release_place *place)
 {
 	struct trust_root trust;
 	struct release release = { 0 };
 	uint64_t bytes;
-	int rc = release_look_trust(&trust, folder);
+	int rc = release_look_trust(&trust, place->folder);
 
 	if (rc == 0)
-		rc = release_look_at(&release, folder, &trust, 0);
+		rc = release_look_at(&release, place, &trust, 0);
 	if (rc == 0)
-		rc = release_look_info(before, folder, &release, &bytes);
+		rc = release_look_info(before, place->folder, &release, &bytes);
 	cJSON_AddNumberToObject(json, "release", (double)release.sequence);
 	return rc == -ENOENT && release.sequence == 0 ? 0 : rc;
 }
@@ -52,18 +52,18 @@ static void add_bytes(cJSON *json, const struct buffer *now, const struct buffer
 				cJSON_GetNumberValue(pictures) + (same ? 0 : (double)now->size));
 }
 
-static int compare(cJSON *json, const struct info_built *built, const char *release,
+static int compare(cJSON *json, const struct info_built *built, const struct release_place *place,
 		   struct diagnostics *diagnostics)
 {
 	struct buffer before;
 	int rc;
 
 	buffer_init(&before, DATABASE_BYTES_MAX);
-	rc = read_before(json, &before, release);
+	rc = read_before(json, &before, place);
 	if (rc == 0)
 		rc = info_difference(json, buffer_bytes(&built->database), buffer_bytes(&before));
 	if (rc < 0)
-		diagnostics_add(diagnostics, rc, release, 0,
+		diagnostics_add(diagnostics, rc, place->folder, 0,
 				"the release cannot be compared: %s; see gopura-content verify",
 				strerror(-rc));
 	else
@@ -84,6 +84,9 @@ static void add_model(cJSON *json, struct scans *scans)
 static int find(cJSON *json, const struct content *content, const char *release,
 		struct diagnostics *diagnostics)
 {
+	const struct release_place place = { .folder = release,
+					     .target = content->tuf_target,
+					     .role = content->tuf_role };
 	const struct info_built *built;
 	struct sources *sources;
 	int rc = sources_create(&sources, content);
@@ -96,7 +99,7 @@ static int find(cJSON *json, const struct content *content, const char *release,
 	alt_texts_find(cJSON_AddArrayToObject(json, "undescribed"), content->folder);
 	if (rc == 0) {
 		add_model(json, sources_scans(sources));
-		rc = compare(json, built, release, diagnostics);
+		rc = compare(json, built, &place, diagnostics);
 	} else if (rc == -EINVAL && sources_found(sources)->error_count > 0) {
 		rc = 0; /* the errors are the answer */
 	} else {

@@ -15,6 +15,7 @@
 #include "base/service.h"
 #include "curator/publish/content_run.h"
 #include "curator/publish/publish_files.h"
+#include "pipeline/content/content.h"
 #include "pipeline/release/release_look.h"
 
 enum {
@@ -28,9 +29,31 @@ struct publisher {
 	const struct publisher_options *options;
 	int stop_fd, notice_fd, lock_fd;
 	bool stopped;
+	/* What temple.ini said when it had no faults last: whose releases are the folder's. */
+	bool knows_place;
+	char target[CONTENT_TARGET_BYTES], role[CONTENT_ROLE_BYTES];
 };
 
 /* ---- the releases that there are */
+
+/* -ENODATA: temple.ini has faults, and had them before. */
+static int find_place(struct publisher *publisher, struct release_place *out)
+{
+	struct diagnostics found = { 0 };
+	struct content content;
+
+	if (content_read(&content, publisher->options->folder, &found) == 0) {
+		memcpy(publisher->target, content.tuf_target, sizeof(publisher->target));
+		memcpy(publisher->role, content.tuf_role, sizeof(publisher->role));
+		publisher->knows_place = true;
+		content_release(&content);
+	}
+	diagnostics_finish(&found);
+	*out = (struct release_place){ .folder = publisher->options->release,
+				       .target = publisher->target,
+				       .role = publisher->role };
+	return publisher->knows_place ? 0 : -ENODATA;
+}
 
 /* Who made it and when is not in a release: it is in the list as it was. */
 static void remember(struct publish_release *release, const struct publish_releases *before)
@@ -52,14 +75,14 @@ static void fill(struct publish_release *out, const struct release *release)
 
 /* The newest first. by NULL: nobody has published just now. */
 static int collect(struct publish_releases *out, const struct publish_releases *before,
-		   const char *folder, const struct publish_state *state)
+		   const struct release_place *place, const struct publish_state *state)
 {
 	struct trust_root trust;
 	struct release release;
-	int rc = release_look_trust(&trust, folder);
+	int rc = release_look_trust(&trust, place->folder);
 
 	if (rc == 0)
-		rc = release_look_at(&release, folder, &trust, 0);
+		rc = release_look_at(&release, place, &trust, 0);
 	if (rc < 0)
 		return rc == -ENOENT ? 0 : rc;
 	out->list = calloc(PUBLISH_RELEASES_MAX, sizeof(*out->list));
@@ -69,7 +92,10 @@ static int collect(struct publish_releases *out, const struct publish_releases *
 	     sequence > 0 && out->count < PUBLISH_RELEASES_MAX; sequence--) {
 		struct publish_release *one = &out->list[out->count];
 
-		if (release_look_at(&release, folder, &trust, sequence) < 0)
+		rc = release_look_at(&release, place, &trust, sequence);
+		if (rc == -EKEYREJECTED)
+			break; /* nobody can go back to what keys of earlier days signed */
+		if (rc < 0)
 			continue; /* numbers may be left out */
 		fill(one, &release);
 		remember(one, before);
@@ -83,16 +109,22 @@ static int collect(struct publish_releases *out, const struct publish_releases *
 }
 
 /* state NULL: nothing was published just now. */
-static int write_releases(const struct publisher *publisher, const struct publish_state *state)
+static int write_releases(struct publisher *publisher, const struct publish_state *state)
 {
 	struct publish_releases before = { 0 }, now = { 0 };
 	const struct publisher_options *options = publisher->options;
+	struct release_place place;
 	int rc;
 
+	if (find_place(publisher, &place) < 0) {
+		log_warn("curator",
+			 "temple.ini has faults, so the list of releases stays as it is");
+		return 0;
+	}
 	if (publish_releases_read(&before, options->folder) < 0)
 		log_warn("curator",
 			 "releases.json is damaged: who published is not known any more");
-	rc = collect(&now, &before, options->release, state);
+	rc = collect(&now, &before, &place, state);
 	if (rc == 0)
 		rc = publish_releases_write(&now, options->folder);
 	publish_releases_finish(&before);
@@ -103,13 +135,14 @@ static int write_releases(const struct publisher *publisher, const struct publis
 }
 
 /* 0: nothing was published yet. */
-static uint64_t current_sequence(const char *release_folder)
+static uint64_t current_sequence(struct publisher *publisher)
 {
+	struct release_place place;
 	struct trust_root trust;
 	struct release release;
 
-	if (release_look_trust(&trust, release_folder) < 0 ||
-	    release_look_at(&release, release_folder, &trust, 0) < 0)
+	if (find_place(publisher, &place) < 0 || release_look_trust(&trust, place.folder) < 0 ||
+	    release_look_at(&release, &place, &trust, 0) < 0)
 		return 0;
 	return release.sequence;
 }
@@ -139,8 +172,7 @@ static int carry_out(struct publisher *publisher, struct publish_state *state, b
 	int tries = was_killed ? TRIES_AFTER_KILL : 1;
 	int rc = 0;
 
-	if (was_killed && request->sequence > 0 &&
-	    current_sequence(publisher->options->release) > state->before)
+	if (was_killed && request->sequence > 0 && current_sequence(publisher) > state->before)
 		return 0; /* it was done before we were killed */
 	for (; tries > 0; tries--) {
 		struct pollfd stop = { .fd = publisher->stop_fd, .events = POLLIN };
@@ -166,7 +198,7 @@ static int begin(struct publisher *publisher, struct publish_state *state,
 			.request = *request,
 			.step = PUBLISH_RUNNING,
 			.begun_s = clock_wall_s(),
-			.before = current_sequence(publisher->options->release),
+			.before = current_sequence(publisher),
 		};
 	rc = publish_state_write(state, publisher->options->folder);
 	if (rc < 0)
@@ -193,7 +225,7 @@ static int work(struct publisher *publisher, struct publish_state *state,
 	}
 	state->step = done == 0 ? PUBLISH_DONE : PUBLISH_FAILED;
 	state->ended_s = clock_wall_s();
-	state->after = current_sequence(publisher->options->release);
+	state->after = current_sequence(publisher);
 	rc = write_releases(publisher, state);
 	if (rc == 0)
 		rc = publish_state_write(state, publisher->options->folder);

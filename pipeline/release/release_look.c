@@ -60,10 +60,13 @@ int release_look_trust(struct trust_root *out, const char *folder)
 }
 
 /* The roots of the release folder have the names of those in a keys' folder. */
-static int look_at_target(struct release *out, const char *folder, uint64_t sequence,
+static int look_at_target(struct release *out, const struct release_place *where, uint64_t sequence,
 			  struct buffer *file)
 {
-	const struct tuf_place place = { .release = folder, .keys_folder = folder };
+	const struct tuf_place place = { .release = where->folder,
+					 .keys_folder = where->folder,
+					 .target = where->target,
+					 .role = where->role };
 	struct tuf_folder tuf;
 	int rc = tuf_folder_open(&tuf, &place);
 
@@ -74,8 +77,8 @@ static int look_at_target(struct release *out, const char *folder, uint64_t sequ
 	return rc;
 }
 
-int release_look_at(struct release *out, const char *folder, const struct trust_root *trust,
-		    uint64_t sequence)
+int release_look_at(struct release *out, const struct release_place *place,
+		    const struct trust_root *trust, uint64_t sequence)
 {
 	char name[64] = "release.json";
 	struct buffer file;
@@ -86,11 +89,11 @@ int release_look_at(struct release *out, const char *folder, const struct trust_
 		snprintf(name, sizeof(name), "history/%" PRIu64 ".json", sequence);
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	if (trust->version == 0) {
-		rc = look_at_target(out, folder, sequence, &file);
+		rc = look_at_target(out, place, sequence, &file);
 		buffer_finish(&file);
 		return rc;
 	}
-	rc = read_file(&file, folder, name);
+	rc = read_file(&file, place->folder, name);
 	if (rc == 0)
 		rc = release_decode(out, trust, buffer_bytes(&file), NULL);
 	buffer_finish(&file);

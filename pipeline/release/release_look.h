@@ -6,12 +6,20 @@
 
 #include "format/metadata.h"
 
+/* Whose releases; strings are borrowed. */
+struct release_place {
+	const char *folder; /* of the releases */
+	const char *target,
+		*role; /* as struct tuf_place has them; NULL or "": release.json, the top */
+};
+
 /* Reads the chain of roots; version 0: the folder is in the form of The Update Framework alone
- * (docs/tuf.md), of which the target release.json is looked at. -ENOENT: nothing was published
+ * (docs/tuf.md), of which the place's target is looked at. -ENOENT: nothing was published
  * there yet. -EBADMSG, -EKEYREJECTED, and errors of reading. */
 must_check int release_look_trust(struct trust_root *out, const char *folder);
-/* Reads release.json, or with a sequence above 0 that of the history. Errors likewise. */
-must_check int release_look_at(struct release *out, const char *folder,
+/* Reads release.json, or with a sequence above 0 that of the history. Errors likewise;
+ * -EKEYREJECTED also of a release whose keys do not count any more. */
+must_check int release_look_at(struct release *out, const struct release_place *place,
 			       const struct trust_root *trust, uint64_t sequence);
 /* Appends the information database of a release to *out. *size_bytes gets the size of all its
  * objects. Errors likewise; -ENOMEM. */

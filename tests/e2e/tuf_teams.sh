@@ -2,7 +2,7 @@
 # Several temples on one server, each signed by its own team: the commands of docs/tuf.md, as they stand there, lead from
 # nothing to two temples and two terminals that show each its own; python-tuf finds both. Then a team's key is exchanged,
 # stolen, joined by a second one; what is wrong changes nothing; a call on a file fails at each place in turn, and what is
-# published stays whole; a release is signed in two steps; a role is removed.
+# published stays whole; a release is signed in two steps; a curator publishes for one team; a role is removed.
 #
 #   STEP=1 tests/e2e/tuf_teams.sh     every call on a file fails, not one in 13
 set -eu
@@ -242,6 +242,28 @@ for one in list/*.targets.json.bytes; do openssl pkeyutl -sign -rawin -inkey rel
 try "the list with its signature" delegate --add-signature list
 ! grep -q '^chan' log || fail "the role is still there"
 rm museum/signing.ini
+
+# ---- the curator's page of a team lists that team's releases, publishes, and goes back to one
+sed -i 's/^snapshot = .*/snapshot = snapshot.key/; s/^timestamp = .*/timestamp = timestamp.key/' bayon.keys/signing.ini
+# ask NUMBER SEQUENCE COMMENT: what the page would ask for; the publisher works it off
+ask() {
+	printf '{"number": %s, "sequence": %s, "at": 1, "by": "petra", "comment": "%s"}\n' "$@" >bayon/.curator/publish/request.json
+	try "the curator's request $1" gopura-curator publisher bayon --out release --keys bayon.keys --once
+}
+# listed: numbers and comments of the releases, the newest first
+listed() { python3 -c 'import json
+print(*[f"""{one["sequence"]}:{one["comment"]}:{one["by"]}""" for one in json.load(open("bayon/.curator/publish/releases.json"))["releases"]], sep=", ")'; }
+try "the publisher" gopura-curator publisher bayon --out release --keys bayon.keys --once
+[ "$(listed)" = "4:in two steps:, 3:while angkor waits:, 2:of bayon alone:, 1::" ] || fail "the curator lists $(listed)"
+ask 1 0 'from the page'
+ask 2 3 'back'
+[ "$(listed)" = "6:back:petra, 5:from the page:petra, 4:in two steps:, 3:while angkor waits:, 2:of bayon alone:, 1::" ] || fail "the curator lists $(listed)"
+wait_for 30 "the curator's release" takes bayon 6 back
+sed -i 's/^name = .*/name = /' bayon/temple.ini
+! gopura-curator publisher bayon --out release --keys bayon.keys --once >log 2>&1 || true
+says 'temple.ini has faults'
+[ "$(listed | cut -d: -f1)" = 6 ] || fail "a fault in temple.ini empties the list"
+sed -i 's/^name = .*/name = Bayon/' bayon/temple.ini
 
 # ---- a team leaves: its role goes, and another snapshot.key comes
 refuses "a role that has published" delegate bayon --remove
