@@ -1,5 +1,6 @@
 /* Reads memory, temperature, disk writes, uptime and firmware slot from /proc and /sys, the room on
- * the data partition, and the file of set-up faults. */
+ * the data partition, why that is not encrypted (a note by image/init), and the file of set-up
+ * faults. */
 #include "health/machine.h"
 
 #include <dirent.h>
@@ -137,5 +138,8 @@ void machine_read(struct machine *out, const struct machine_options *options)
 	read_memory(out, options->root);
 	read_slot(out, options->root);
 	read_data(out, options->data);
+	read_text(out->data_plain, sizeof(out->data_plain), options->root,
+		  "/run/gopura-data-plain");
+	out->data_plain[strcspn(out->data_plain, "\n")] = '\0';
 	read_text(out->faults, sizeof(out->faults), "", options->faults);
 }

@@ -7,7 +7,7 @@
 enum { MACHINE_FAULTS_BYTES_MAX = 4096 };
 
 struct machine_options {
-	const char *root;   /* put before /proc and /sys; "" except in tests */
+	const char *root;   /* put before /proc, /sys and /run; "" except in tests */
 	const char *faults; /* file with the faults of gopura.conf, one per line; may be missing */
 	const char *data;   /* a folder of the data partition */
 };
@@ -20,6 +20,8 @@ struct machine {
 	double memory_bytes, memory_free_bytes;
 	double data_bytes, data_free_bytes; /* of the data partition, as available to users */
 	double written_bytes;               /* written to all disks since boot */
+	char data_plain[128]; /* why the data is not encrypted though the image asks for it, or ""
+			       */
 	char faults[MACHINE_FAULTS_BYTES_MAX];
 };
 

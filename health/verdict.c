@@ -277,6 +277,12 @@ static void judge_machine(struct verdict *verdict, const struct snapshot *snapsh
 		    "Soon, downloads can no longer be saved. Lower [cache] mib in the board profile, or "
 		    "use a larger card or disk.",
 		    "%.0f of %.0f MB are free.", m->data_free_bytes / 1e6, m->data_bytes / 1e6);
+	if (m->data_plain[0])
+		add(verdict, LEVEL_WARNING, "The data partition is not encrypted",
+		    "This system should encrypt what it stores. Switch the TPM on in the firmware's setup "
+		    "(it may be called fTPM, PTT or security device), then switch the terminal off and "
+		    "on. What is stored is then lost and loaded again.",
+		    "%s", m->data_plain);
 	if (figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_clock_trusted") == 0 &&
 	    m->uptime_s > CLOCK_S)
 		add(verdict, LEVEL_WARNING, "The clock may be wrong",

@@ -141,6 +141,7 @@ for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot c
 	ln -s busybox "$early/bin/$name"
 done
 install -m 755 "$here/init" "$early/init"
+[ "${DATA:-plain}" != tpm ] || : >"$early/encrypt-data"
 cp "$kernel/lib/modules/$version"/modules.{order,builtin} "$early/lib/modules/$version/"
 # shellcheck disable=SC2046
 wanted "$early/lib/modules/$version" $(modules | sed -n 's/^early //p') 2>/dev/null

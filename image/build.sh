@@ -9,6 +9,7 @@
 #   FRESH=yes       install the packages anew: otherwise those of the last build are used (docs/upgrades.md)
 #   RELEASE=FOLDER  a release to include, for a terminal that never gets a network
 #   UNITS=FOLDER    drop-ins for systemd's units, as gopura-kiosk.service.d/later.conf
+#   DATA=tpm        the terminal encrypts its data partition with a key of its TPM (docs/image.md)
 #   CONF=FILE       the gopura.conf of the image; the files that it names must be beside it
 #   KEYS=FOLDER     key.pem and cert.pem that sign updates, loader.key, secure-boot.key and provenance.key (docs/image.md; default:
 #                   build/image-keys, created if missing)
@@ -32,6 +33,10 @@ here=$PWD/image out=${OUT:-$image_folder} mirror=${MIRROR:-http://deb.debian.org
 export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)} LC_ALL=C TZ=UTC
 export PATH=$PATH:/usr/sbin:/sbin
 slot_mib=300 boot_mib=48 esp_mib=64 data_mib=${DATA_MIB:-512}
+case ${DATA:-plain} in
+plain | tpm) ;;
+*) echo "image: DATA must be plain or tpm, not '$DATA'" >&2; exit 1 ;;
+esac
 mkdir -p "$out"
 out=$(cd "$out" && pwd)
 say() { echo "image: $*"; }

@@ -1,5 +1,5 @@
-/* Enlarges the data partition at boot: first the partition table, then the kernel's view of the
- * partition, then the mounted ext4 file system. */
+/* Enlarges the data partition at boot: first the partition table and the kernel's view of the
+ * partition, later the mounted ext4 file system, which may be on an encrypted device on top. */
 #include "system/grow.h"
 
 #include <errno.h>
@@ -71,7 +71,32 @@ static int grow_table(const char *disk, const char *name, struct disk_part *part
 	return rc;
 }
 
-static int grow_files(const char *folder, uint64_t bytes)
+int grow_partition(const char *disk, const char *name)
+{
+	struct disk_part part = { 0 };
+	const int rc = grow_table(disk, name, &part);
+
+	if (rc < 0)
+		log_warn("setup", "%s: partition %s could not be enlarged: %s", disk, name,
+			 strerror(-rc));
+	else if (part.grown)
+		log_info("setup", "%s: partition %s was enlarged to %llu MiB", disk, name,
+			 (unsigned long long)(part.size_bytes / MIB));
+	return rc;
+}
+
+static int size_of(const char *device, uint64_t *bytes)
+{
+	int rc, fd = open(device, O_RDONLY | O_CLOEXEC);
+
+	if (fd < 0)
+		return -errno;
+	rc = ioctl(fd, BLKGETSIZE64, bytes) < 0 ? -errno : 0;
+	close(fd);
+	return rc;
+}
+
+static int resize_mounted(const char *folder, uint64_t bytes)
 {
 	struct statfs facts;
 	uint64_t blocks;
@@ -89,22 +114,15 @@ static int grow_files(const char *folder, uint64_t bytes)
 	return rc;
 }
 
-int grow(const char *disk, const char *name, const char *folder)
+int grow_files(const char *device, const char *folder)
 {
-	struct disk_part part = { 0 };
-	int rc = grow_table(disk, name, &part);
+	uint64_t bytes = 0;
+	int rc = size_of(device, &bytes);
 
-	if (rc < 0) {
-		log_warn("setup", "%s: partition %s could not be enlarged: %s", disk, name,
-			 strerror(-rc));
-		return rc;
-	}
-	if (part.grown)
-		log_info("setup", "%s: partition %s was enlarged to %llu MiB", disk, name,
-			 (unsigned long long)(part.size_bytes / MIB));
-	rc = grow_files(folder, part.size_bytes);
+	if (rc == 0)
+		rc = resize_mounted(folder, bytes);
 	if (rc < 0)
-		log_warn("setup", "%s: the file system could not be enlarged: %s", folder,
-			 strerror(-rc));
+		log_warn("setup", "%s: the file system on %s could not be enlarged: %s", folder,
+			 device, strerror(-rc));
 	return rc;
 }

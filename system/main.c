@@ -19,7 +19,8 @@ static const char help[] =
 	"usage: gopura-setup --conf FILE... --out DIR [--boards DIR]\n"
 	"       gopura-setup --check FILE [--boards DIR]\n"
 	"       gopura-setup --checksum FILE\n"
-	"       gopura-setup --grow DISK --partition NAME --mounted DIR\n"
+	"       gopura-setup --grow DISK --partition NAME\n"
+	"       gopura-setup --grow-files DEVICE --mounted DIR\n"
 	"\n"
 	"  --conf FILE      gopura.conf; if given several times, the first file that exists is read;\n"
 	"                   if none exists, the network is configured by DHCP\n"
@@ -29,8 +30,9 @@ static const char help[] =
 	"                   (default: /usr/share/gopura/board)\n"
 	"  --check FILE     print the faults of the file; exit status 1 if there are any\n"
 	"  --checksum FILE  print a checksum of the file and the files that it names\n"
-	"  --grow DISK      enlarge the last partition of the disk, NAME, and its ext4 file system,\n"
-	"                   mounted at DIR, to the end of the disk\n"
+	"  --grow DISK      enlarge the last partition of the disk, NAME, to the end of the disk\n"
+	"  --grow-files DEVICE\n"
+	"                   enlarge the ext4 file system on the device, mounted at DIR, to its end\n"
 	"  --help, --version\n"
 	"\n"
 	"Examples:\n"
@@ -43,7 +45,7 @@ struct command {
 	const char *confs[CONFS_MAX];
 	unsigned count;
 	const char *out, *check, *sum, *boards;
-	const char *grow, *partition, *mounted;
+	const char *grow, *partition, *grow_files, *mounted;
 	bool boards_asked;
 };
 
@@ -56,6 +58,7 @@ enum {
 	OPTION_SUM,
 	OPTION_GROW,
 	OPTION_PARTITION,
+	OPTION_GROW_FILES,
 	OPTION_MOUNTED,
 	OPTION_VERSION,
 	OPTION_HELP,
@@ -70,6 +73,7 @@ static const struct option long_options[] = {
 	{ "sum", required_argument, NULL, OPTION_SUM }, /* its name before */
 	{ "grow", required_argument, NULL, OPTION_GROW },
 	{ "partition", required_argument, NULL, OPTION_PARTITION },
+	{ "grow-files", required_argument, NULL, OPTION_GROW_FILES },
 	{ "mounted", required_argument, NULL, OPTION_MOUNTED },
 	{ "version", no_argument, NULL, OPTION_VERSION },
 	{ "help", no_argument, NULL, OPTION_HELP },
@@ -129,6 +133,9 @@ static void take_option(struct command *command, int option)
 	case OPTION_PARTITION:
 		command->partition = optarg;
 		break;
+	case OPTION_GROW_FILES:
+		command->grow_files = optarg;
+		break;
 	case OPTION_MOUNTED:
 		command->mounted = optarg;
 		break;
@@ -151,11 +158,14 @@ static void parse(struct command *command, int argc, char **argv)
 		take_option(command, option);
 	if (optind < argc)
 		refuse_argument(argv[optind]);
-	if (command->grow || command->partition || command->mounted) {
-		if (!command->grow || !command->partition || !command->mounted)
-			usage("--grow needs --partition and --mounted");
-		if (command->check || command->sum || command->count > 0 || command->out)
-			usage("--grow cannot be combined with other commands");
+	if (command->grow || command->partition || command->grow_files || command->mounted) {
+		if (!command->grow != !command->partition)
+			usage("--grow and --partition need each other");
+		if (!command->grow_files != !command->mounted)
+			usage("--grow-files and --mounted need each other");
+		if ((command->grow && command->grow_files) || command->check || command->sum ||
+		    command->count > 0 || command->out)
+			usage("--grow and --grow-files cannot be combined with other commands");
 		return;
 	}
 	if (command->check || command->sum) {
@@ -237,7 +247,9 @@ int main(int argc, char **argv)
 
 	parse(&command, argc, argv);
 	if (command.grow)
-		return grow(command.grow, command.partition, command.mounted) < 0;
+		return grow_partition(command.grow, command.partition) < 0;
+	if (command.grow_files)
+		return grow_files(command.grow_files, command.mounted) < 0;
 	if (command.sum)
 		return print_sum(command.sum);
 	return command.check ? check(&command) : apply(&command);

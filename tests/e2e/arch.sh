@@ -32,6 +32,7 @@ refused() { # refused WHAT SETTING...: image/build.sh says so
 refused "ARCH must be amd64 or arm64, not 'mips'" ARCH=mips
 refused "BOARD must be raspberry-pi or nothing, not 'beagle'" BOARD=beagle
 refused "BOARD=raspberry-pi has ARCH=arm64, not 'amd64'" BOARD=raspberry-pi ARCH=amd64
+refused "DATA must be plain or tpm, not 'secret'" DATA=secret
 ! grep -vE '^(#|((amd64|arm64) )?(early )?[a-zA-Z0-9_]+( [a-zA-Z0-9_]+)*$)' image/modules || fail "image/modules: a line in another form"
 
 # ---- a date of snapshot.debian.org

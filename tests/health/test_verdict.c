@@ -226,6 +226,14 @@ static void a_restart_is_told_for_an_hour(void **state)
 		     "2 minutes ago; 2 restarts since the computer started.") == 0);
 }
 
+static void data_that_should_be_encrypted_and_is_not_is_a_warning(void **state)
+{
+	(void)state;
+	snprintf(snapshot.machine.data_plain, sizeof(snapshot.machine.data_plain), "No TPM.");
+	CHECK(finds(LEVEL_WARNING, "not encrypted"));
+	CHECK(strcmp(verdict.findings[0].detail, "No TPM.") == 0);
+}
+
 static void each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first(void **state)
 {
 	(void)state;
@@ -289,6 +297,7 @@ int main(void)
 		CASE(a_restart_is_told_for_an_hour),
 		CASE(says_days_before_what_must_be_signed_anew),
 		CASE(a_clock_that_nobody_set_judges_no_expiry),
+		CASE(data_that_should_be_encrypted_and_is_not_is_a_warning),
 		CASE(each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first),
 		CASE(more_faults_than_have_room_leave_what_is_ill),
 		CASE(durations_are_in_the_unit_that_says_most),

@@ -27,6 +27,7 @@ drop_in() { # drop_in UNIT LINE...
 }
 rm -rf "$units"
 drop_in kiosk WatchdogSec=120
+[ "${DATA:-}" != tpm ] || drop_in setup 'ExecStartPre=/bin/cat /etc/machine-id' # for tpm.py
 if [ "$ARCH" != amd64 ]; then
 	drop_in kiosk WatchdogSec=300 TimeoutStartSec=900
 	for unit in setup system usb; do

@@ -1,0 +1,24 @@
+#!/bin/bash
+# tpm.sh: tests in QEMU the data partition that is encrypted with a key of the TPM (DATA=tpm, docs/image.md), with swtpm as
+# the TPM: tpm.py has the cases. The logs are in build/qemu-tpm.
+set -eu
+cd "$(dirname "$0")/../.."
+skip() { echo "$*"; exit 77; }
+./deps.sh image/tools.txt || skip "what makes an image cannot be installed here"
+export PATH=$PATH:/usr/sbin:/sbin
+work=build/qemu-tpm image=build/qemu-tpm/image other=build/qemu-image/image snakeoil=/usr/share/ovmf/PkKek-1-snakeoil
+mkdir -p "$work"
+# Debian's packages are the same as in the image of the other tests.
+if [ ! -e "$image/base.key" ] && [ -e "$other/base.key" ]; then
+	mkdir -p "$image"
+	cp -a "$other"/base.{tar,key} "$other/kernel" "$image/"
+fi
+DATA=tpm tests/qemu/lib-image.sh "$image"
+
+# Two other loaders: one with a changed letter, and one that Debian's firmware for tests trusts when its Secure Boot is on.
+sed 's/This program cannot be run in DOS mode/This program cannot be run in dos mode/' "$image/BOOTX64.EFI" >"$work/changed.efi"
+! cmp -s "$image/BOOTX64.EFI" "$work/changed.efi" || { echo "the loader has no text to change"; exit 1; }
+openssl rsa -in $snakeoil.key -passin pass:snakeoil -out "$work/snakeoil.pem" 2>/dev/null
+sbsign --key "$work/snakeoil.pem" --cert $snakeoil.pem --output "$work/trusted.efi" "$image/BOOTX64.EFI" 2>/dev/null
+trap 'rm -f "$work"/*.img' EXIT
+python3 tests/qemu/tpm.py "$image/gopura.img" "$work" "$@"
