@@ -31,6 +31,7 @@ make_statement() {
 	jq -n -c --rawfile subjects "$work/subjects" --rawfile packages "$folder/packages.txt" \
 		--arg builder "${BUILDER:-https://gopura.example/builder/unnamed}" --arg arch "${ARCH:-amd64}" \
 		--arg mirror "${MIRROR:-http://deb.debian.org}" --arg version "$VERSION" --arg sequence "$SEQUENCE" \
+		--arg data "${DATA:-plain}" \
 		--arg commit "$(git rev-parse HEAD)" --argjson modified "$modified" --arg list "$(sha256 "$folder/packages.txt")" \
 		--arg sbom "$(sha256 "$folder/sbom.spdx.json")" '
 		def table: split("\n")[] | select(. != "") | split("\t");
@@ -41,7 +42,7 @@ make_statement() {
 			predicate: {
 				buildDefinition: {
 					buildType: "https://gopura.example/image/v1",
-					externalParameters: {architecture: $arch, mirror: $mirror, version: $version, sequence: $sequence},
+					externalParameters: {architecture: $arch, mirror: $mirror, version: $version, sequence: $sequence, data: $data},
 					resolvedDependencies: ([
 						{name: "source", digest: {gitCommit: $commit}, annotations: {modified: $modified}},
 						{name: "packages.txt", digest: {sha256: $list}}

@@ -30,7 +30,7 @@ assert statement["_type"] == "https://in-toto.io/Statement/v1" and statement["pr
 assert {one["name"]: one["digest"]["sha256"] for one in statement["subject"]} == {
     name: hashlib.sha256((work / name).read_bytes()).hexdigest() for name in ("gopura.img", "gopura.raucb")}
 build = statement["predicate"]["buildDefinition"]
-assert build["externalParameters"] == {"architecture": "arm64", "mirror": "http://mirror.example", "version": "v9", "sequence": "17"}
+assert build["externalParameters"] == {"architecture": "arm64", "mirror": "http://mirror.example", "version": "v9", "sequence": "17", "data": "plain"}
 assert build["resolvedDependencies"][0]["digest"]["gitCommit"] == commit
 assert "pkg:deb/debian/epoch@2%3A1.0%2Bb~rc1?arch=arm64&distro=bookworm" in [one.get("uri") for one in build["resolvedDependencies"]]
 assert statement["predicate"]["runDetails"]["builder"]["id"] == "https://museum.example/builder"
