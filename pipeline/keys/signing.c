@@ -98,7 +98,6 @@ static int sign_with_key(struct buffer *out, int fd, struct bytes message)
 
 	buffer_init(&file, KEY_FILE_BYTES_MAX);
 	rc = buffer_read_fd(&file, fd);
-	close(fd);
 	if (rc == 0)
 		rc = is_seed ? sign_with_seed(out, buffer_bytes(&file), message)
 			     : tuf_private_sign(out, buffer_bytes(&file), message);

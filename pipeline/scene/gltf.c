@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "pipeline/scene/scenery_image.h"
 
@@ -122,7 +121,8 @@ static int hex_digit(char c)
 				      : -1;
 }
 
-/* Names are URIs: %20 is a space. Returns false if it is too long. */
+/* Names are URIs: %20 is a space. A % that begins no byte stands for itself, as does %00, which
+ * would end the name. Returns false if it is too long. */
 static bool decode_name(char out[NAME_BYTES], const char *uri)
 {
 	size_t size = 0;
@@ -130,9 +130,10 @@ static bool decode_name(char out[NAME_BYTES], const char *uri)
 	for (; *uri && size + 1 < NAME_BYTES; uri++) {
 		const int high = *uri == '%' ? hex_digit(uri[1]) : -1;
 		const int low = high >= 0 ? hex_digit(uri[2]) : -1;
+		const bool is_byte = low >= 0 && high * 16 + low > 0;
 
-		out[size++] = low > 0 || high > 0 ? (char)(high * 16 + low) : *uri;
-		if (low >= 0)
+		out[size++] = is_byte ? (char)(high * 16 + low) : *uri;
+		if (is_byte)
 			uri += 2;
 	}
 	out[size] = '\0';
@@ -162,7 +163,6 @@ static int read_buffer(struct gltf *gltf, struct buffer *out, const cJSON *json,
 				"the buffer %.200s cannot be opened: %s; put it beside the file",
 				name, strerror(-fd));
 	rc = buffer_read_fd(out, fd);
-	close(fd);
 	if (rc < 0)
 		return gltf_say(gltf, rc, json, "the buffer %.200s cannot be read: %s", name,
 				rc == -EFBIG ? "too large; simplify the scene" : strerror(-rc));

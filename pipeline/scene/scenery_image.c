@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <string.h>
-#include <unistd.h>
 
 static int leave_out(struct diagnostics *warnings, const char *file, unsigned line,
 		     const char *name, const char *why)
@@ -39,7 +38,6 @@ int scenery_image_read(struct picture *out, int fd, const char *name, const char
 					       : strerror(-fd));
 	buffer_init(&bytes, SCENERY_IMAGE_BYTES_MAX);
 	rc = buffer_read_fd(&bytes, fd);
-	close(fd);
 	if (rc == 0)
 		rc = scenery_image_decode(out, buffer_bytes(&bytes), name, file, line, warnings);
 	else if (rc != -ENOMEM)
