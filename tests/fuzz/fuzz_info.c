@@ -1,6 +1,7 @@
 /* An information database of anybody's: the bytes as a database file; or, where they begin with
  * "SQL:", the database that these statements make, so that the fuzzer reaches rows that contradict
- * one another. What opens answers every question about itself. */
+ * one another; or, where they begin with "ADD:", one that was built as at publishing, which these
+ * statements change. What opens answers every question about itself. */
 #include <math.h>
 #include <sqlite3.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 #include "storage/info_spoken.h"
 #include "storage/info_tools.h"
 #include "storage/info_tour.h"
+#include "tests/fuzz/built_info.h"
 
 enum { STEPS_PER_CALL = 1000, CALLS_MAX = 200, SQL_BYTES_MAX = 64 << 10 };
 
@@ -114,28 +116,53 @@ static int allow(void *data, int action, const char *a, const char *b, const cha
 		       : SQLITE_OK;
 }
 
-static void make_and_open(const uint8_t *sql, size_t size)
+/* The built database, in memory of the caller's that can grow. */
+static void open_built(sqlite3 *db)
+{
+	static struct info_built built;
+	unsigned char *copy;
+
+	if (built.database.size == 0)
+		built_info(&built);
+	copy = sqlite3_malloc64(built.database.size);
+	if (!copy)
+		abort();
+	memcpy(copy, built.database.data, built.database.size);
+	if (sqlite3_deserialize(db, "main", copy, (sqlite3_int64)built.database.size,
+				(sqlite3_int64)built.database.size,
+				SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_RESIZEABLE) !=
+	    SQLITE_OK)
+		abort();
+}
+
+static void make_and_open(const uint8_t *sql, size_t size, bool adds)
 {
 	char text[SQL_BYTES_MAX + 1];
 	unsigned char *image;
 	sqlite3_int64 image_bytes;
-	int calls = 0;
+	bool is_changed;
+	int rc, calls = 0;
 	sqlite3 *db;
 
 	if (size > SQL_BYTES_MAX)
 		return;
 	memcpy(text, sql, size);
 	text[size] = '\0';
-	if (sqlite3_open(":memory:", &db) != SQLITE_OK ||
-	    sqlite3_exec(db, "PRAGMA page_size=512; PRAGMA max_page_count=2000;", NULL, NULL,
+	if (sqlite3_open(":memory:", &db) != SQLITE_OK)
+		abort();
+	if (adds)
+		open_built(db);
+	if (sqlite3_exec(db, "PRAGMA page_size=512; PRAGMA max_page_count=2000;", NULL, NULL,
 			 NULL) != SQLITE_OK)
 		abort();
 	sqlite3_limit(db, SQLITE_LIMIT_LENGTH, 1 << 20);
 	sqlite3_progress_handler(db, STEPS_PER_CALL, bound_work, &calls);
 	sqlite3_set_authorizer(db, allow, NULL);
 	/* One after the other: those before a statement that is wrong count. */
-	(void)sqlite3_exec(db, text, NULL, NULL, NULL);
-	image = sqlite3_serialize(db, "main", &image_bytes, 0);
+	rc = sqlite3_exec(db, text, NULL, NULL, NULL);
+	/* Most mistakes are in the first statement: what was built is then as it was. */
+	is_changed = !adds || rc == SQLITE_OK || sqlite3_total_changes(db) > 0;
+	image = is_changed ? sqlite3_serialize(db, "main", &image_bytes, 0) : NULL;
 	if (image)
 		open_image((struct bytes){ image, (size_t)image_bytes });
 	sqlite3_free(image);
@@ -144,8 +171,8 @@ static void make_and_open(const uint8_t *sql, size_t size)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	if (size > 4 && memcmp(data, "SQL:", 4) == 0)
-		make_and_open(data + 4, size - 4);
+	if (size > 4 && (memcmp(data, "SQL:", 4) == 0 || memcmp(data, "ADD:", 4) == 0))
+		make_and_open(data + 4, size - 4, data[0] == 'A');
 	else
 		open_image((struct bytes){ data, size });
 	return 0;

@@ -29,19 +29,26 @@ static void prepare(void)
 
 static void decode_all(struct bytes file)
 {
-	struct trust_root root = trust;
+	struct trust_root root = trust, first;
 	struct timestamp timestamp;
-	struct release release;
+	struct release release, target;
+	const char *why[5] = { NULL };
+	const int refused[5] = { trust_root_next(&root, file, &why[0]),
+				 trust_root_first(&first, file, &why[1]),
+				 release_decode(&release, &trust, file, &why[2]),
+				 release_decode_target(&target, file, &why[3]),
+				 timestamp_decode(&timestamp, &trust, file, &why[4]) };
 
-	if (trust_root_next(&root, file, NULL) == 0 && root.version != 2)
+	for (size_t i = 0; i < ARRAY_COUNT(refused); i++)
+		if ((refused[i] < 0) != (why[i] != NULL))
+			abort();
+	if (refused[0] == 0 && root.version != 2)
 		abort();
-	if (trust_root_first(&root, file, NULL) == 0 && root.roles[META_ROOT].threshold == 0)
+	if (refused[1] == 0 && first.roles[META_ROOT].threshold == 0)
 		abort();
-	if (release_decode(&release, &trust, file, NULL) == 0 && release.sequence == 0)
-		abort();
-	if (release_decode_target(&release, file, NULL) == 0 && release.sequence == 0)
-		abort();
-	if (timestamp_decode(&timestamp, &trust, file, NULL) == 0 && timestamp.sequence == 0)
+	if ((refused[2] == 0 && release.sequence == 0) ||
+	    (refused[3] == 0 && target.sequence == 0) ||
+	    (refused[4] == 0 && timestamp.sequence == 0))
 		abort();
 }
 
