@@ -132,7 +132,7 @@ points | diff "$folder/points" - || fail "a title, a page or a region touched sa
 # ---- a changed byte, at rest or in transit
 pack=$(ls -S "$release"/packs/* | head -n 1) # the tiles; a smaller one may be of an older release alone
 cp "$pack" "$folder/pack"
-printf 'x' | dd of="$pack" bs=1 seek=50000 conv=notrunc status=none
+tests/tools/flip_byte.sh "$pack" 50000
 "$content" verify "$server_url" --ca "$server_ca" >/dev/null 2>"$folder/log" && fail "tampering was not found"
 grep -q "$(basename "$pack")" "$folder/log" || fail "the message does not name the pack: $(cat "$folder/log")"
 cp "$folder/pack" "$pack"

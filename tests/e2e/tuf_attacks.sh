@@ -130,8 +130,7 @@ refuses '3.targets.json: .*too large|targets: not of the length and hashes that 
 
 begin "arbitrary installation: other bytes in the place of the signed release.json"
 prepare 3
-printf x | dd of="$(ls -t "$next"/tuf/targets/*.json | while read -r file; do cmp -s "$file" "$work/3/release.json" && echo "$file"; done)" \
-	bs=1 seek=30 conv=notrunc status=none
+tests/tools/flip_byte.sh "$(ls -t "$next"/tuf/targets/*.json | while read -r file; do cmp -s "$file" "$work/3/release.json" && echo "$file"; done)" 30
 offer
 refuses 'release.json is not the target that was signed'
 

@@ -58,7 +58,7 @@ disk own 11111111
 disk stick 22222222
 disk copy 11111111
 cp "$work/own.img" "$work/changed.img"
-printf x | dd of="$work/changed.img" bs=1 seek=$((43 * 1048576 + 8)) conv=notrunc status=none # when the file system was made
+tests/tools/flip_byte.sh "$work/changed.img" $((43 * 1048576 + 8)) # when the file system was made
 # The initramfs of the image, which trusts the root of own instead: what is appended to it replaces its files.
 boot=${BOOT:-$image/boot}
 rm -rf "$work/boot"

@@ -43,8 +43,8 @@ disk() { cp --sparse=always "$image/gopura.img" "$work/$1.img"; }
 change() {
 	local block
 	block=$(debugfs -R "blocks /$1" "$image/boot.img" 2>/dev/null | tr ' ' '\n' | grep . | sed -n 100p)
-	printf x | dd of="$work/$1.img" bs=1 seek=$(($(place gopura-boot-a) + block * $(dumpe2fs -h "$image/boot.img" 2>/dev/null |
-		sed -n 's/^Block size: *//p') + 17)) conv=notrunc status=none
+	tests/tools/flip_byte.sh "$work/$1.img" $(($(place gopura-boot-a) + block * $(dumpe2fs -h "$image/boot.img" 2>/dev/null |
+		sed -n 's/^Block size: *//p') + 17))
 }
 refused() {
 	disk "$1"

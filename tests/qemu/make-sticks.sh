@@ -50,7 +50,7 @@ hangs() {
 }
 variant next unchanged
 cp "$work/gopura.raucb" "$work/tampered.raucb"
-printf 'x' | dd of="$work/tampered.raucb" bs=1 seek=$(($(stat -c %s "$work/tampered.raucb") / 2)) conv=notrunc status=none
+tests/tools/flip_byte.sh "$work/tampered.raucb" $(($(stat -c %s "$work/tampered.raucb") / 2))
 stick tampered "$work/tampered.raucb"
 VERSION=before SEQUENCE=$((sequence - 2)) image/bundle.sh "$work"
 stick older "$work/gopura.raucb"
