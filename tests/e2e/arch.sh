@@ -30,6 +30,7 @@ refused() { # refused WHAT SETTING...: image/build.sh says so
 	[ $status = 1 ] && grep -qF "$1" "$work/log" || fail "${*:2} ends with $status: $(cat "$work/log")"
 }
 refused "ARCH must be amd64 or arm64, not 'mips'" ARCH=mips
+refused "DATA=tpm was never tried on arm64" DATA=tpm ARCH=arm64
 refused "BOARD must be raspberry-pi or nothing, not 'beagle'" BOARD=beagle
 refused "BOARD=raspberry-pi has ARCH=arm64, not 'amd64'" BOARD=raspberry-pi ARCH=amd64
 refused "DATA must be plain or tpm, not 'secret'" DATA=secret
