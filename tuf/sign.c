@@ -104,9 +104,8 @@ static void put_json(struct buffer *out, struct bytes canonical)
 {
 	size_t from = 0;
 
-	if (canonical.size ==
-	    0) /* there may be no data then, as where there is no canonical form */
-		return;
+	if (canonical.size == 0)
+		return; /* where there is no canonical form, there is no data either */
 	for (size_t i = 0; i < canonical.size; i++) {
 		if (canonical.data[i] >= ' ')
 			continue;
