@@ -302,7 +302,8 @@ static int after_view(struct capture *capture, const struct capture_frame *frame
 
 	if (!capture->began_ms)
 		return 0;
-	if (frame->shown->frame.patches > 0 && !capture->first_ms)
+	if (frame->shown->frame.patches + frame->shown->frame.stream_triangles > 0 &&
+	    !capture->first_ms)
 		capture->first_ms = now_ms;
 	if (capture->frames < FRAMES_MAX)
 		capture->frame_us[capture->frames++] = frame->work_us;
