@@ -97,7 +97,7 @@ if [ "${1:-}" = lane ]; then
 fi
 
 # Campaigns, which take long or of which the other tests take a sample, are in targets of make alone; "only" runs one here too.
-campaigns='qemu/powercut qemu/tpm'
+campaigns='qemu/powercut qemu/raspberry_pi qemu/tpm'
 scripts() { find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' | sed 's/^tests\///; s/\.sh$//' | sort; }
 
 mode=${1:-all}
