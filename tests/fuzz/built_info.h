@@ -1,5 +1,4 @@
-/* An information database that is built as at publishing, so that it is always of today's format.
- */
+/* An information database that is built as at publishing, and so always of today's format. */
 #ifndef GOPURA_TESTS_FUZZ_BUILT_INFO_H
 #define GOPURA_TESTS_FUZZ_BUILT_INFO_H
 

@@ -8,10 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include "base/bytes.h"
+#include "tests/close_once.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
@@ -27,18 +26,6 @@ static uint32_t random_next(void)
 	random_state ^= random_state >> 17;
 	random_state ^= random_state << 5;
 	return random_state;
-}
-
-/* In place of libc's: what closes a descriptor twice closes another thread's file one day. */
-int close(int fd)
-{
-	const int rc = (int)syscall(SYS_close, fd);
-
-	if (rc < 0 && errno == EBADF && fd >= 0) {
-		fprintf(stderr, "descriptor %d is closed and was not open\n", fd);
-		abort();
-	}
-	return rc;
 }
 
 /* In an allocation of its exact size, so that the sanitizer sees one byte too far. */
