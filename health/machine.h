@@ -20,8 +20,7 @@ struct machine {
 	double memory_bytes, memory_free_bytes;
 	double data_bytes, data_free_bytes; /* of the data partition, as available to users */
 	double written_bytes;               /* written to all disks since boot */
-	char data_plain[128]; /* why the data is not encrypted though the image asks for it, or ""
-			       */
+	char data_plain[128]; /* why data is plain though the image encrypts it, or "" */
 	char faults[MACHINE_FAULTS_BYTES_MAX];
 };
 

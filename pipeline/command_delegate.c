@@ -1,5 +1,4 @@
-/* gopura-content delegate: says which team may publish which temple in a release folder of several.
- */
+/* gopura-content delegate: says which team may publish which of several temples in one folder. */
 #include "pipeline/commands.h"
 
 #include <getopt.h>
@@ -95,8 +94,7 @@ static const char *fault_of(const struct settings *settings)
 	if (!options->role && (sets || settings->remove))
 		return "name the role after the release folder";
 	if (options->role && !content_role_is_valid(options->role))
-		return "a role is up to 64 letters, digits and ._- that do not begin with a point, "
-		       "and not root, timestamp, snapshot or targets";
+		return content_role_rule;
 	if (options->unsigned_folder && !sets && !settings->remove && !settings->renew)
 		return "--write-unsigned goes with --key, --remove or --renew";
 	return NULL;

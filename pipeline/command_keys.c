@@ -119,8 +119,7 @@ static const char *fault_of(const struct settings *settings)
 	if (settings->role && (settings->tuf || settings->museum))
 		return "give only one of --team, --tuf and --museum";
 	if (settings->role && !content_role_is_valid(settings->role))
-		return "a role is up to 64 letters, digits and ._- that do not begin with a point, "
-		       "and not root, timestamp, snapshot or targets";
+		return content_role_rule;
 	return NULL;
 }
 

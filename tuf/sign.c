@@ -82,6 +82,32 @@ cJSON *tuf_add_file(cJSON *to, const char *name, uint32_t version, struct bytes 
 	return entry;
 }
 
+bool tuf_role_names(const cJSON *role, const char *keyid)
+{
+	const cJSON *id;
+
+	cJSON_ArrayForEach(id, cJSON_GetObjectItemCaseSensitive(role, "keyids"))
+	{
+		if (strcmp(cJSON_GetStringValue(id), keyid) == 0)
+			return true;
+	}
+	return false;
+}
+
+void tuf_drop_unused_keys(cJSON *keys, const cJSON *roles)
+{
+	const cJSON *role;
+
+	for (cJSON *key = keys ? keys->child : NULL, *next; key; key = next) {
+		bool used = false;
+
+		next = key->next;
+		cJSON_ArrayForEach(role, roles) used = used || tuf_role_names(role, key->string);
+		if (!used)
+			cJSON_Delete(cJSON_DetachItemViaPointer(keys, key));
+	}
+}
+
 void tuf_signer_finish(struct tuf_signer *signer)
 {
 	sodium_memzero(signer, sizeof(*signer));

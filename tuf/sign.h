@@ -26,6 +26,11 @@ struct cJSON *tuf_content(enum tuf_type type, uint32_t version, int64_t expires_
  * and SHA-256; version 0: none. Returns the entry, borrowed; NULL: no memory. */
 struct cJSON *tuf_add_file(struct cJSON *to, const char *name, uint32_t version, struct bytes file);
 
+/* Returns whether a role names the key with this id. */
+bool tuf_role_names(const struct cJSON *role, const char *keyid);
+/* Removes from keys those that no role names; roles: their array, or the object that a root has. */
+void tuf_drop_unused_keys(struct cJSON *keys, const struct cJSON *roles);
+
 /* Appends a whole file to out: content, which becomes the member "signed", and one signature of
  * each signer. The same content and keys give the same bytes. Returns as canonical_write. */
 must_check int tuf_sign(struct buffer *out, const struct cJSON *content,

@@ -107,5 +107,7 @@ must_check int content_work_path(const struct content *content, const char *name
 bool content_is_lit(const struct content *content, bool has_textures);
 /* Returns whether a name may be that of a role ([release] role). */
 bool content_role_is_valid(const char *name);
+/* What such a name is, for messages. */
+extern const char content_role_rule[];
 
 #endif

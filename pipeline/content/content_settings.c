@@ -309,6 +309,10 @@ static bool set_target(const struct setting *setting, void *target, const char *
 	return true;
 }
 
+const char content_role_rule[] =
+	"a role is up to 64 letters, digits and ._- that do not begin with "
+	"a point, and not root, timestamp, snapshot or targets";
+
 bool content_role_is_valid(const char *name)
 {
 	static const char *const reserved[] = { "root", "timestamp", "snapshot", "targets" };

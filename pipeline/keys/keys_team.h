@@ -5,12 +5,10 @@
 
 #include "base/compiler.h"
 
-/* Makes it, or brings it up to date with what the museum hands over, a folder that has tuf/ of its
- * keys and, where teams sign these files themselves, snapshot.key and timestamp.key:
- *
- *   ROLE.key ROLE.pub   made here, if missing: the private key, and the public one in PEM, which
- * the museum needs tuf/N.root.json snapshot.key timestamp.key    copied signing.ini         made
- * here, if missing: who signs
+/* Makes it, or brings it up to date with what the museum hands over: a folder that has tuf/ of its
+ * keys and, where teams sign these files themselves, snapshot.key and timestamp.key. All of that is
+ * copied. Made, if missing, are ROLE.key, the team's private key, with ROLE.pub, the public one in
+ * PEM, which the museum needs; and signing.ini, which says who signs.
  *
  * -EEXIST: the folder has other keys, or follows another museum; -ENOENT: the museum's root is
  * missing; -EPERM, -EBADMSG: a key is damaged or others may read it. Errors are logged. */

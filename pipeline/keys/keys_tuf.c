@@ -99,21 +99,13 @@ static int write_root(const char *folder, uint32_t version, cJSON *content,
 
 static bool has_keyid(const struct tuf_file *root, enum tuf_type type, const char *keyid)
 {
-	const cJSON *role = tuf_root_role(root, type), *id;
-
-	cJSON_ArrayForEach(id, cJSON_GetObjectItemCaseSensitive(role, "keyids"))
-	{
-		if (strcmp(id->valuestring, keyid) == 0)
-			return true;
-	}
-	return false;
+	return tuf_role_names(tuf_root_role(root, type), keyid);
 }
 
 static cJSON *next_content(const struct tuf_file *last, const struct tuf_signer *snapshot)
 {
 	cJSON *content = cJSON_Duplicate(last->content, true);
-	cJSON *keys = cJSON_GetObjectItemCaseSensitive(content, "keys"), *key, *next;
-	struct tuf_file made = { .content = content };
+	cJSON *keys = cJSON_GetObjectItemCaseSensitive(content, "keys");
 
 	cJSON_DeleteItemFromObjectCaseSensitive(content, "version");
 	cJSON_DeleteItemFromObjectCaseSensitive(keys, snapshot->id);
@@ -122,15 +114,7 @@ static cJSON *next_content(const struct tuf_file *last, const struct tuf_signer 
 		cJSON_Delete(content);
 		return NULL;
 	}
-	for (key = keys->child; key; key = next) { /* those that sign nothing any more */
-		bool used = false;
-
-		next = key->next;
-		for (int type = 0; type < TUF_TYPES; type++)
-			used = used || has_keyid(&made, (enum tuf_type)type, key->string);
-		if (!used)
-			cJSON_Delete(cJSON_DetachItemViaPointer(keys, key));
-	}
+	tuf_drop_unused_keys(keys, cJSON_GetObjectItemCaseSensitive(content, "roles"));
 	return content;
 }
 

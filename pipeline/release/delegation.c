@@ -14,6 +14,7 @@
 #include "pipeline/release/release_tuf.h"
 #include "pipeline/release/tuf_staged.h"
 #include "tuf/public_key.h"
+#include "tuf/sign.h"
 
 enum { PUBLIC_KEY_BYTES_MAX = 16 << 10 };
 
@@ -159,13 +160,13 @@ static int check_path(const struct tuf_folder *folder, const char *role)
 	return taken ? -EEXIST : 0;
 }
 
-/* Judges what becomes of the role's present release. keys and role: as they will be; NULL: removed.
- */
+/* Judges what becomes of the role's present release. keys and role: as they will be, or NULL. */
 static int check_release(const struct tuf_folder *folder, const struct delegation_options *options,
 			 const cJSON *keys, const cJSON *role)
 {
-	const cJSON *before = tuf_folder_delegated(folder, options->role);
-	const cJSON *keys_before = member(tuf_folder_delegations(folder), "keys");
+	const cJSON *delegations = tuf_folder_delegations(folder);
+	const cJSON *before = tuf_folder_role_in(delegations, options->role);
+	const cJSON *keys_before = member(delegations, "keys");
 	struct tuf_file file;
 	uint32_t version;
 	int rc = tuf_folder_read_role(folder, options->role, &file, &version);
@@ -217,18 +218,6 @@ static cJSON *member_or(cJSON *object, const char *name, cJSON *(*make)(void))
 	return NULL;
 }
 
-static cJSON *role_in(const cJSON *roles, const char *name)
-{
-	cJSON *role;
-
-	cJSON_ArrayForEach(role, roles)
-	{
-		if (strcmp(name_of(role), name) == 0)
-			return role;
-	}
-	return NULL;
-}
-
 static cJSON *add_role(cJSON *roles, const char *name)
 {
 	cJSON *role = cJSON_CreateObject();
@@ -263,30 +252,6 @@ static bool set_keys(cJSON *role, cJSON *keys, const struct given *given)
 	return cJSON_AddNumberToObject(role, "threshold", given->options->threshold);
 }
 
-static bool is_used(const cJSON *roles, const char *keyid)
-{
-	const cJSON *role, *id;
-
-	cJSON_ArrayForEach(role, roles)
-	{
-		cJSON_ArrayForEach(id, member(role, "keyids"))
-		{
-			if (strcmp(cJSON_GetStringValue(id), keyid) == 0)
-				return true;
-		}
-	}
-	return false;
-}
-
-static void drop_unused_keys(cJSON *keys, const cJSON *roles)
-{
-	for (cJSON *key = keys ? keys->child : NULL, *next; key; key = next) {
-		next = key->next;
-		if (!is_used(roles, key->string))
-			cJSON_Delete(cJSON_DetachItemViaPointer(keys, key));
-	}
-}
-
 static int edit_set(void *context, const struct tuf_folder *folder, cJSON *content)
 {
 	const struct given *given = context;
@@ -305,12 +270,12 @@ static int edit_set(void *context, const struct tuf_folder *folder, cJSON *conte
 	}
 	if (rc < 0)
 		return rc;
-	role = role_in(roles, name);
+	role = tuf_folder_role_in(all, name);
 	if (!role)
 		role = add_role(roles, name);
 	if (!role || !set_keys(role, keys, given))
 		return no_memory();
-	drop_unused_keys(keys, roles);
+	tuf_drop_unused_keys(keys, roles);
 	return check_release(folder, given->options, keys, role);
 }
 
@@ -318,7 +283,7 @@ static int edit_remove(void *context, const struct tuf_folder *folder, cJSON *co
 {
 	const struct delegation_options *options = context;
 	cJSON *all = member(content, "delegations"), *roles = member(all, "roles");
-	cJSON *role = role_in(roles, options->role);
+	cJSON *role = tuf_folder_role_in(all, options->role);
 	int rc = role ? check_release(folder, options, NULL, NULL) : -ENOENT;
 
 	if (rc == -ENOENT)
@@ -327,7 +292,7 @@ static int edit_remove(void *context, const struct tuf_folder *folder, cJSON *co
 	if (rc < 0)
 		return rc;
 	cJSON_Delete(cJSON_DetachItemViaPointer(roles, role));
-	drop_unused_keys(member(all, "keys"), roles);
+	tuf_drop_unused_keys(member(all, "keys"), roles);
 	return 0;
 }
 

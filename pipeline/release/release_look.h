@@ -8,9 +8,9 @@
 
 /* Whose releases; strings are borrowed. */
 struct release_place {
-	const char *folder; /* of the releases */
-	const char *target,
-		*role; /* as struct tuf_place has them; NULL or "": release.json, the top */
+	const char *folder;
+	const char *target; /* as struct tuf_place has it; NULL or "": release.json */
+	const char *role;   /* likewise; NULL or "": the top's */
 };
 
 /* Reads the chain of roots; version 0: the folder is in the form of The Update Framework alone

@@ -177,11 +177,11 @@ const cJSON *tuf_folder_delegations(const struct tuf_folder *folder)
 	return cJSON_GetObjectItemCaseSensitive(folder->top.content, "delegations");
 }
 
-const cJSON *tuf_folder_delegated(const struct tuf_folder *folder, const char *name)
+cJSON *tuf_folder_role_in(const cJSON *delegations, const char *name)
 {
-	const cJSON *all = tuf_folder_delegations(folder), *role;
+	cJSON *role;
 
-	cJSON_ArrayForEach(role, cJSON_GetObjectItemCaseSensitive(all, "roles"))
+	cJSON_ArrayForEach(role, cJSON_GetObjectItemCaseSensitive(delegations, "roles"))
 	{
 		if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(role, "name")),
 			   name) == 0)
@@ -207,7 +207,7 @@ void tuf_folder_naming_keys(const struct tuf_folder *folder, const cJSON **keys,
 {
 	if (has_role(folder)) {
 		*keys = cJSON_GetObjectItemCaseSensitive(tuf_folder_delegations(folder), "keys");
-		*role = tuf_folder_delegated(folder, folder->place.role);
+		*role = tuf_folder_role_in(tuf_folder_delegations(folder), folder->place.role);
 	} else {
 		*keys = tuf_root_keys(&folder->root);
 		*role = tuf_root_role(&folder->root, TUF_TARGETS);

@@ -49,8 +49,8 @@ void tuf_folder_naming_keys(const struct tuf_folder *folder, const struct cJSON 
 
 /* What targets.json delegates, as the specification says; NULL: nothing. */
 const struct cJSON *tuf_folder_delegations(const struct tuf_folder *folder);
-/* The role of that name among them, or NULL. */
-const struct cJSON *tuf_folder_delegated(const struct tuf_folder *folder, const char *name);
+/* The role of that name among delegations, or NULL. */
+struct cJSON *tuf_folder_role_in(const struct cJSON *delegations, const char *name);
 /* Returns whether terminals that look for the target come to the role. */
 bool tuf_folder_role_has_path(const struct cJSON *role, const char *target);
 /* Parses the last file of a role, whoever signed it. *out stays empty where it has published none.

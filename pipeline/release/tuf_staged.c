@@ -75,25 +75,33 @@ int tuf_staged_write(struct tuf_staged *staged)
 	return tuf_write_signed(&staged->file, buffer_bytes(&staged->message), staged->signatures);
 }
 
-bool tuf_staged_is_signed(const struct tuf_staged *staged)
+/* -EKEYREJECTED: too few signatures. *why gets what else is wrong. */
+static int verify(const struct tuf_staged *staged, const char **why)
 {
 	struct tuf_file file = { 0 };
-	const char *why;
-	const bool is =
-		tuf_file_parse(&file, buffer_bytes(&staged->file), staged->type, &why) == 0 &&
-		tuf_file_verify(&file, staged->keys, staged->role) == 0;
+	int rc;
 
+	*why = "no memory";
+	rc = tuf_file_parse(&file, buffer_bytes(&staged->file), staged->type, why);
+	if (rc == 0)
+		rc = tuf_file_verify(&file, staged->keys, staged->role);
 	tuf_file_finish(&file);
-	return is;
+	return rc;
+}
+
+bool tuf_staged_is_signed(const struct tuf_staged *staged)
+{
+	const char *why;
+
+	return verify(staged, &why) == 0;
 }
 
 int tuf_staged_check(const struct tuf_staged *staged)
 {
-	struct tuf_file file = { 0 };
-	const char *why = "no memory";
-	int rc = tuf_file_parse(&file, buffer_bytes(&staged->file), staged->type, &why);
+	const char *why;
+	const int rc = verify(staged, &why);
 
-	if (rc == 0 && (rc = tuf_file_verify(&file, staged->keys, staged->role)) == -EKEYREJECTED)
+	if (rc == -EKEYREJECTED)
 		log_error(
 			"pipeline",
 			"%s: %d signatures, fewer than its threshold of %d; sign it with more keys "
@@ -102,7 +110,6 @@ int tuf_staged_check(const struct tuf_staged *staged)
 			cJSON_GetObjectItemCaseSensitive(staged->role, "threshold")->valueint);
 	else if (rc < 0)
 		log_error("pipeline", "%s: %s", staged->name, why);
-	tuf_file_finish(&file);
 	return rc;
 }
 
