@@ -3,8 +3,9 @@
 # loader: the board's first programs (raspi-firmware), U-Boot (u-boot-rpi) and the kernel's device trees, all of them
 # from the unpacked packages in PACKAGES (kernel.sh).
 #
-# The device trees tell U-Boot what to start (raspberry-pi/bootcmd) and to wait for no key: its own settings would be
-# on a card of a number that differs between boards, and a visitor's keyboard must not stop it.
+# The device trees tell U-Boot what to start (raspberry-pi/bootcmd), and to wait for no key, because a visitor's keyboard
+# must not stop it. A file of settings would not do: U-Boot reads that from card 0, and the number of a board's card differs.
+# TREES names device trees of other boards, to be changed in the same way.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 packages=$1 folder=$2

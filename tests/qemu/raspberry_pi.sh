@@ -17,20 +17,20 @@ image=$work/image log=$work/serial.log qemu=
 mkdir -p "$work"
 tests/qemu/lib-image.sh "$image"
 
-# What the firmware of a board finds on its partition, as the card has it.
+# What the firmware of a board finds on its partition, and the device tree of a Pi 3, which the card has not.
 card=$work/card.img firmware=$work/firmware
-rm -rf "$firmware"
+rm -rf "$firmware" "$work/trees"
 mkdir -p "$firmware"
 cp --sparse=always "$image/gopura.img" "$card"
 truncate -s 2G "$card" # a card has a power of two bytes here, and the data partition grows
 mcopy -i "$card@@1M" ::/u-boot.bin ::/start4.elf ::/fixup4.dat ::/config.txt ::/bcm2711-rpi-4-b.dtb "$firmware/"
 kernel=$(sed -n 's/^kernel=//p' "$firmware/config.txt")
-TREES=$(echo "$image"/kernel/usr/lib/linux-image-*/broadcom/bcm2837-rpi-3-b.dtb) image/raspberry-pi.sh "$image/kernel" "$firmware"
+TREES=$(echo "$image"/kernel/usr/lib/linux-image-*/broadcom/bcm2837-rpi-3-b.dtb) image/raspberry-pi.sh "$image/kernel" "$work/trees"
 
 finish() { [ -z "$qemu" ] || kill $qemu 2>/dev/null || true; rm -f "$card"; }
 trap finish EXIT
 : >"$log"
-qemu-system-aarch64 -M raspi3b -kernel "$firmware/$kernel" -dtb "$firmware/bcm2837-rpi-3-b.dtb" \
+qemu-system-aarch64 -M raspi3b -kernel "$firmware/$kernel" -dtb "$work/trees/bcm2837-rpi-3-b.dtb" \
 	-accel tcg,thread=multi,tb-size=256 -display none -drive "if=sd,format=raw,file=$card" -no-reboot \
 	-serial null -serial "file:$log" &
 qemu=$!
