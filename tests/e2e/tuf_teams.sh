@@ -271,6 +271,7 @@ says 'terminals that show it would keep it'
 try "bayon leaves" delegate bayon --remove --invalidate
 says 'take nothing any more'
 refuses "bayon publishes" publish_as bayon --comment 'after its end'
+wait_for 30 "the terminal of Bayon to say so" grep -q 'there is no target bayon/release.json' bayon.log
 rm museum/snapshot.key
 try "another snapshot.key" gopura-content keys --keys museum --museum
 [ -f museum/tuf/2.root.json ] || fail "there is no second root"
