@@ -12,6 +12,10 @@ struct cJSON;
 
 enum { INFO_ID_BYTES_MAX = 64, INFO_PARTS_FILE_BYTES_MAX = 16 << 20 };
 
+/* Coordinates and lengths beyond are mistakes. What is computed from those within, such as a view
+ * of a part, is a finite float, as terminals require. */
+#define DRAFT_FAR_M 1e9
+
 enum { DRAFT_PAGE_NAME_BYTES = INFO_ID_BYTES_MAX + 40 }; /* "pages/ID.LANGUAGE.html" and the like */
 
 /* The spoken text of a page. */

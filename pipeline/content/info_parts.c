@@ -29,6 +29,11 @@ static const char *part_name(const struct part_reader *r)
 	return r->part->id ? r->part->id : "?";
 }
 
+static bool is_length(const cJSON *item)
+{
+	return cJSON_IsNumber(item) && fabs(item->valuedouble) <= DRAFT_FAR_M;
+}
+
 static bool read_numbers(const cJSON *array, float *out, int count)
 {
 	if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != count)
@@ -36,7 +41,7 @@ static bool read_numbers(const cJSON *array, float *out, int count)
 	for (int i = 0; i < count; i++) {
 		const cJSON *item = cJSON_GetArrayItem(array, i);
 
-		if (!cJSON_IsNumber(item) || !isfinite((float)item->valuedouble))
+		if (!is_length(item))
 			return false;
 		out[i] = (float)item->valuedouble;
 	}
@@ -47,7 +52,7 @@ static bool read_number(const cJSON *object, const char *key, float *out)
 {
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
 
-	if (!cJSON_IsNumber(item) || !isfinite((float)item->valuedouble))
+	if (!is_length(item))
 		return false;
 	*out = (float)item->valuedouble;
 	return true;
@@ -58,8 +63,8 @@ static bool read_vector(const struct part_reader *r, const cJSON *object, const 
 {
 	if (read_numbers(cJSON_GetObjectItemCaseSensitive(object, key), out, 3))
 		return true;
-	report_part(r, "part \"%s\": \"%s\" must be three numbers, metres: [x, y, z]", part_name(r),
-		    key);
+	report_part(r, "part \"%s\": \"%s\" must be three numbers, metres, up to %g: [x, y, z]",
+		    part_name(r), key, DRAFT_FAR_M);
 	return false;
 }
 
@@ -70,8 +75,9 @@ static void read_sphere(struct part_reader *r, const cJSON *json)
 	region->kind = REGION_SPHERE;
 	read_vector(r, json, "centre", region->centre_m);
 	if (!read_number(json, "radius", &region->radius_m) || region->radius_m <= 0)
-		report_part(r, "part \"%s\": \"radius\" must be a positive number of metres",
-			    part_name(r));
+		report_part(r,
+			    "part \"%s\": \"radius\" must be a positive number of metres, up to %g",
+			    part_name(r), DRAFT_FAR_M);
 }
 
 static void read_box(struct part_reader *r, const cJSON *json)
@@ -127,8 +133,9 @@ static bool read_corners(struct part_reader *r, const cJSON *corners)
 	}
 	for (int i = 0; i < count; i++) {
 		if (!read_numbers(cJSON_GetArrayItem(corners, i), region->corners_m[i], 2)) {
-			report_part(r, "part \"%s\": corner %d must be two numbers: [x, y]",
-				    part_name(r), i + 1);
+			report_part(r,
+				    "part \"%s\": corner %d must be two numbers up to %g: [x, y]",
+				    part_name(r), i + 1, DRAFT_FAR_M);
 			return false;
 		}
 		region->centre_m[0] += region->corners_m[i][0] / (float)count;
@@ -145,8 +152,10 @@ static void read_prism(struct part_reader *r, const cJSON *json)
 	region->kind = REGION_PRISM;
 	if (!read_number(json, "floor", &region->floor_m) ||
 	    !read_number(json, "roof", &region->roof_m) || region->roof_m <= region->floor_m)
-		report_part(r, "part \"%s\": \"floor\" and \"roof\" must be heights, roof above",
-			    part_name(r));
+		report_part(
+			r,
+			"part \"%s\": \"floor\" and \"roof\" must be heights up to %g, roof above",
+			part_name(r), DRAFT_FAR_M);
 	region->centre_m[2] = (region->floor_m + region->roof_m) / 2;
 	if (!read_corners(r, cJSON_GetObjectItemCaseSensitive(json, "corners")))
 		return;

@@ -67,11 +67,12 @@ static bool read_vector(const struct tour_reader *r, const cJSON *json, const ch
 	for (int i = 0; is_vector && i < 3; i++) {
 		const cJSON *item = cJSON_GetArrayItem(array, i);
 
-		out[i] = cJSON_IsNumber(item) ? (float)item->valuedouble : NAN;
-		is_vector = isfinite(out[i]);
+		is_vector = cJSON_IsNumber(item) && fabs(item->valuedouble) <= DRAFT_FAR_M;
+		out[i] = is_vector ? (float)item->valuedouble : 0;
 	}
 	if (!is_vector)
-		report(r, "\"%s\" must be three numbers, metres: [x, y, z]", key);
+		report(r, "\"%s\" must be three numbers, metres, up to %g: [x, y, z]", key,
+		       DRAFT_FAR_M);
 	return is_vector;
 }
 

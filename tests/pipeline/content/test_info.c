@@ -150,6 +150,14 @@ static void names_the_line_of_a_bad_part(void **state)
 		{ "{\"parts\": [\n{\"id\": \"a\", \"anchor\": [0,0,1e99], \"page\": false,"
 		  "\"title\": {\"en\": \"x\"}}]}",
 		  "three numbers", 2 },
+		/* finite, but the middle of the heights, a float, would not be */
+		{ "{\"parts\": [\n{\"id\": \"a\", \"region\": {\"kind\": \"prism\", \"floor\": 2e38,"
+		  "\"roof\": 3e38, \"corners\": [[0,0],[1,1],[0,1]]}, \"page\": false,"
+		  "\"title\": {\"en\": \"x\"}}]}",
+		  "heights up to 1e+09", 2 },
+		{ "{\"parts\": [\n{\"id\": \"a\", \"region\": {\"kind\": \"sphere\", \"centre\":"
+		  "[0,0,0], \"radius\": 1.1e9}, \"page\": false, \"title\": {\"en\": \"x\"}}]}",
+		  "radius", 2 },
 		{ "{\"parts\": [\n{\"id\": \"a\", \"anchor\": [0,0,0], \"page\": false,"
 		  "\"title\": {\"en\": \"x\"}},\n{\"id\": \"a\", \"anchor\": [0,0,0],"
 		  "\"page\": false, \"title\": {\"en\": \"{[\"}}]}",

@@ -409,6 +409,8 @@ static void faults_are_named_with_file_line_and_cure(void **state)
 		  "stop 2: \"eye\" must be three numbers", 4 },
 		{ TOUR(STOP ",\n{\"eye\": [1, 2, 1e99], \"target\": [4, 5, 6]}"),
 		  "\"eye\" must be three numbers", 4 },
+		{ TOUR(STOP ",\n{\"eye\": [1, 2, -2e9], \"target\": [4, 5, 6]}"),
+		  "\"eye\" must be three numbers, metres, up to 1e+09", 4 },
 		{ TOUR(STOP ",\n{\"eye\": [4, 5, 6], \"target\": [4, 5, 6]}"), "are one place", 4 },
 		{ TOUR(STOP ",\n{\"eye\": [1, 2, 3]}"), "\"eye\" alone is not a view", 4 },
 		{ TOUR(STOP ",\n{\"target\": [1, 2, 3]}"), "\"target\" alone is not a view", 4 },
