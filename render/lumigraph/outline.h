@@ -2,7 +2,8 @@
  * slight tint inside, as in Okamoto et al., Fig. 4. Whatever ends the part in the picture (its own
  * border, its silhouette, or something in front of it) is one and the same line, because it is
  * found in the picture: visible pixels of the part are drawn white into a mask, and the line lies
- * where the mask changes. */
+ * where the mask changes. Openings and notches narrower than about 15 pixels are closed before
+ * (a dilation, then an erosion): two lines would leave nothing of them but a blot. */
 #ifndef GOPURA_RENDER_LUMIGRAPH_OUTLINE_H
 #define GOPURA_RENDER_LUMIGRAPH_OUTLINE_H
 
@@ -11,14 +12,16 @@
 
 struct outline_program {
 	GLuint program;
-	GLint step, scale;
+	GLint step, scale, closed_scale, range;
 };
 
 struct outline {
-	struct outline_program line, blur;
-	struct gl_target mask, soft; /* soft: blurred; absent until a part is marked */
-	int width_px, height_px;     /* of what is shown, of which soft has half the size */
-	float low[2], high[2]; /* the rectangle that may hold the part, in clip space, -1..1 */
+	struct outline_program line, blur, mean;
+	/* Absent until a part is marked: the mask, as large as the picture; what the line is found
+	 * in, at half the size of what is shown; two in which openings are closed, at a quarter. */
+	struct gl_target mask, soft, closed, aside;
+	int width_px, height_px; /* of what is shown */
+	float low[2], high[2];   /* the rectangle that may hold the part, in clip space, -1..1 */
 };
 
 /* Builds the programs; needs a current GL context, as everything here. Errors as gl_program_build;
