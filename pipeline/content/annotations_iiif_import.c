@@ -478,7 +478,8 @@ static cJSON *begin_annotation(struct converter *c)
 	cJSON *made = cJSON_Duplicate(c->item->annotation, true);
 
 	for (size_t i = 0; made && i < G_N_ELEMENTS(converted); i++)
-		cJSON_DeleteItemFromObjectCaseSensitive(made, converted[i]);
+		while (json_member(made, converted[i])) /* a key may be there twice */
+			cJSON_DeleteItemFromObjectCaseSensitive(made, converted[i]);
 	if (made && !json_string(made, "id")) {
 		cJSON_DeleteItemFromObjectCaseSensitive(made, "id");
 		add(c, made, "id", cJSON_CreateString("#comment"));

@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/log.h"
 #include "pipeline/content/annotations_iiif_import.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/annotations_write.h"
@@ -18,6 +17,9 @@
 #include "pipeline/content/info_parts.h"
 #include "pipeline/import/json.h"
 #include "pipeline/import/manifest.h"
+
+/* Of an annotation: every text, the page and all documents in all languages. */
+enum { BODIES_MAX = (ANNOTATION_TEXTS + 1 + DRAFT_DOCUMENTS_MAX) * INFO_LANGUAGES_MAX };
 
 static const char *item_id(const struct importer *im)
 {
@@ -55,14 +57,29 @@ static bool is_taken(const struct importer *im, const char *id)
 	return false;
 }
 
-/* Appends -2, -3, ... until no other part has the id. */
+/* Appends the first of -2, -3, ... that no other part has. */
 static void make_differ(const struct importer *im, char id[INFO_ID_BYTES_MAX + 1])
 {
 	const size_t size = strlen(id), room = INFO_ID_BYTES_MAX - 12;
-	char *end = id + (size < room ? size : room);
+	const size_t kept = size < room ? size : room;
+	bool used[INFO_PARTS_MAX + 2] = { false };
+	uint32_t n = 2;
 
-	for (int n = 2; n < 10000 && is_taken(im, id); n++)
-		snprintf(end, 13, "-%d", n);
+	if (!is_taken(im, id))
+		return;
+	for (const cJSON *other = im->parts->child; other; other = other->next) {
+		const char *taken = json_string(other, "id");
+
+		if (other != im->part && strncmp(taken, id, kept) == 0 && taken[kept] == '-') {
+			const long number = strtol(taken + kept + 1, NULL, 10);
+
+			if (number >= 0 && number < (long)ARRAY_COUNT(used))
+				used[number] = true;
+		}
+	}
+	while (used[n]) /* there are fewer parts than numbers */
+		n++;
+	snprintf(id + kept, 13, "-%u", n);
 }
 
 /* Makes the part's id from the end of the IRI, after the last '#', '/' or ':', using only
@@ -90,7 +107,7 @@ static void read_id(struct importer *im)
 			"\"#gate\"");
 	if (im->makes_ids && size > 0)
 		make_differ(im, id);
-	if (is_taken(im, id))
+	if (size > 0 && is_taken(im, id))
 		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
 				"annotation \"%.80s\": another one is part \"%s\" already: give it "
 				"another \"id\"",
@@ -156,29 +173,53 @@ static void read_credits(struct importer *im, const cJSON *from, cJSON *to)
 
 /* ---- the body */
 
-/* A document may come with each part that has it; its text is the same then. */
 static void add_page(struct importer *im, const char *name, const char *language, const char *html,
 		     bool is_document)
 {
-	struct page_file page = { .html = html, .is_document = is_document };
+	struct page_file *page;
 
 	if (ARRAY_RESERVE(im->pages, im->page_room, im->page_count + 1, UINT32_MAX) < 0) {
 		im->failed = true;
 		return;
 	}
-	snprintf(page.name, sizeof(page.name), "pages/%s.%.16s.html", name, language);
-	for (uint32_t i = 0; i < im->page_count; i++) {
-		const struct page_file *other = &im->pages[i];
+	page = &im->pages[im->page_count];
+	*page = (struct page_file){ .html = html,
+				    .item_id = item_id(im),
+				    .line = im->line,
+				    .position = im->page_count++,
+				    .is_document = is_document };
+	snprintf(page->name, sizeof(page->name), "pages/%s.%.16s.html", name, language);
+}
 
-		if (strcmp(other->name, page.name) != 0)
-			continue;
-		if (strcmp(other->html, html) != 0 || !(is_document || other->is_document))
-			diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
+static int compare_pages(const void *a, const void *b)
+{
+	const struct page_file *x = a, *y = b;
+	const int order = strcmp(x->name, y->name);
+
+	return order != 0 ? order : (x->position > y->position) - (x->position < y->position);
+}
+
+/* Leaves one page of each name. A document may come with each part that has it; its text is the
+ * same then. */
+static void settle_pages(struct importer *im)
+{
+	uint32_t kept = 0;
+
+	if (im->page_count > 0)
+		qsort(im->pages, im->page_count, sizeof(*im->pages), compare_pages);
+	for (uint32_t i = 0; i < im->page_count; i++) {
+		const struct page_file *page = &im->pages[i];
+		const struct page_file *first = kept > 0 ? &im->pages[kept - 1] : NULL;
+
+		if (!first || strcmp(first->name, page->name) != 0)
+			im->pages[kept++] = *page;
+		else if (strcmp(first->html, page->html) != 0 ||
+			 !(page->is_document || first->is_document))
+			diagnostics_add(im->diagnostics, -EINVAL, im->options->file, page->line,
 					"annotation \"%.80s\": two texts for %s: leave one",
-					item_id(im), page.name);
-		return;
+					page->item_id, page->name);
 	}
-	im->pages[im->page_count++] = page;
+	im->page_count = kept;
 }
 
 /* Takes "pages/NAME.LANGUAGE.html" apart. Returns false for other ids, of bodies that are the
@@ -280,11 +321,18 @@ static void read_body(struct importer *im, const cJSON *body)
 static void read_bodies(struct importer *im)
 {
 	const cJSON *bodies = cJSON_GetObjectItemCaseSensitive(im->item, "body");
+	const cJSON *body = json_first(bodies);
 
 	im->has_page = false;
-	for (const cJSON *body = json_first(bodies); body && !im->failed;
-	     body = json_next(bodies, body))
+	for (uint32_t n = 0; n < BODIES_MAX && body && !im->failed; n++) {
 		read_body(im, body);
+		body = json_next(bodies, body);
+	}
+	if (body && !im->failed)
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, im->line,
+				"annotation \"%.80s\" has over %d bodies, which are more than a "
+				"part's texts and documents in %d languages: leave some out",
+				item_id(im), BODIES_MAX, INFO_LANGUAGES_MAX);
 	if (json_string(im->item, "bodyValue") && !bodies)
 		diagnostics_add(im->diagnostics, 0, im->options->file, im->line,
 				"annotation \"%.80s\": bodyValue is left out: write a TextualBody",
@@ -415,26 +463,35 @@ static bool read_target(struct importer *im)
 
 /* ---- annotations */
 
-static void read_item(struct importer *im, const cJSON *item, unsigned line)
+/* Returns false if a release cannot have that many. */
+static bool read_item(struct importer *im, const cJSON *item, unsigned line)
 {
 	im->item = item;
 	im->line = line;
+	if (im->report->part_count == INFO_PARTS_MAX) {
+		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, line,
+				"from here on there are over %d annotations, and a release has at "
+				"most as many parts: leave some out",
+				INFO_PARTS_MAX);
+		return false;
+	}
 	im->part = cJSON_CreateObject();
 	if (!im->part || !cJSON_AddItemToArray(im->parts, im->part)) {
 		cJSON_Delete(im->part);
 		im->failed = true;
-		return;
+		return false;
 	}
 	read_id(im);
 	if (im->failed || !read_target(im)) {
 		cJSON_DetachItemViaPointer(im->parts, im->part);
 		cJSON_Delete(im->part);
-		return;
+		return true;
 	}
 	read_bodies(im);
 	read_thumbnail(im);
 	read_credits(im, item, im->part);
 	im->report->part_count++;
+	return true;
 }
 
 /* Finds the annotations in a collection, a page, a list, or a single annotation. Returns NULL after
@@ -482,8 +539,11 @@ static int read_comments(struct importer *im, const struct json_text *json)
 	im->report->skipped_count += comments.skipped_count;
 	im->y_is_up = false;
 	im->makes_ids = true;
-	cJSON_ArrayForEach(item, comments.items) if (rc == 0 && !im->failed)
-		read_item(im, item, comments.lines[i++]);
+	cJSON_ArrayForEach(item, comments.items)
+	{
+		if (rc < 0 || im->failed || !read_item(im, item, comments.lines[i++]))
+			break;
+	}
 	free(comments.lines);
 	return rc;
 }
@@ -497,7 +557,8 @@ static void read_items(struct importer *im, const struct json_text *json)
 	read_credits(im, json->root, im->parts_file);
 	for (const cJSON *item = json_first(items); item && !im->failed;
 	     item = json_next(items, item))
-		read_item(im, item, json_text_line(json, item));
+		if (!read_item(im, item, json_text_line(json, item)))
+			return;
 }
 
 /* ---- the whole */
@@ -534,6 +595,7 @@ static int import(struct importer *im)
 			rc = read_comments(im, &json);
 		else if (im->parts)
 			read_items(im, &json);
+		settle_pages(im);
 		im->tours = cJSON_GetObjectItemCaseSensitive(json.root, "tours");
 		if (im->failed)
 			rc = -ENOMEM;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/safe_open.h"
 
 static int note_written(struct importer *im, const char *path)
 {
@@ -57,7 +58,8 @@ static int make_folder(struct importer *im, const char *name)
 	return -EIO;
 }
 
-static int copy_picture(struct importer *im, const char *from, const char *name)
+/* The folder of the file may be a stranger's: a link in it could bring in a private file. */
+static int copy_picture(struct importer *im, const char *folder, const char *name)
 {
 	char to[PATH_MAX], relative[300];
 	struct buffer file;
@@ -69,10 +71,11 @@ static int copy_picture(struct importer *im, const char *from, const char *name)
 	if (access(to, F_OK) == 0) /* already in the folder, or the same file */
 		return 0;
 	buffer_init(&file, 64 << 20);
-	rc = buffer_read_file(&file, from);
+	rc = buffer_read_beneath(&file, folder, relative);
 	if (rc < 0)
-		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
-				"%s cannot be read: %s", from, strerror(-rc));
+		rc = diagnostics_add(im->diagnostics, rc == -ENOMEM ? rc : -EINVAL,
+				     im->options->file, 0, "%s/%s cannot be read: %s", folder,
+				     relative, open_problem(rc));
 	else
 		rc = write_file(im, relative, buffer_bytes(&file));
 	buffer_finish(&file);
@@ -111,7 +114,7 @@ static int copy_pictures(struct importer *im)
 		snprintf(from, sizeof(from), "%s/pictures/%s", folder, entries[i]->d_name);
 		if (rc == 0 && entries[i]->d_name[0] != '.' && stat(from, &info) == 0 &&
 		    S_ISREG(info.st_mode))
-			rc = copy_picture(im, from, entries[i]->d_name);
+			rc = copy_picture(im, folder, entries[i]->d_name);
 		free(entries[i]);
 	}
 	free(entries);

@@ -9,6 +9,9 @@
 struct page_file {
 	char name[DRAFT_PAGE_NAME_BYTES]; /* for example "pages/gate.en.html" */
 	const char *html;                 /* borrowed from the file's JSON */
+	const char *item_id;              /* of its annotation, for messages; borrowed likewise */
+	unsigned line;                    /* likewise */
+	uint32_t position;                /* in the file, among the pages */
 	bool is_document;                 /* came as one; also another part's page may be one */
 };
 

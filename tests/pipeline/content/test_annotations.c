@@ -238,6 +238,11 @@ static bool nothing_is_left(void)
 	return access(copy, F_OK) < 0;
 }
 
+#define WITH_PAGE(html)                                                                            \
+	"{\"id\": \"#gate\", \"body\": [{\"value\": \"x\", \"purpose\": \"tagging\"}, "            \
+	"{\"value\": \"" html "\", \"format\": \"text/html\"}], \"target\": {\"selector\": " POINT \
+	"}}"
+
 static void names_the_place_of_what_it_refuses(void **state)
 {
 	static const struct {
@@ -257,6 +262,8 @@ static void names_the_place_of_what_it_refuses(void **state)
 		{ "{\"items\": [\n" ITEM("#a", POINT) ",\n" ITEM("x/A", POINT) "]}",
 		  "part \"a\" already", 3 },
 		{ "{\"items\": [\n" ITEM("", POINT) "]}", "without an id", 2 },
+		{ "{\"items\": [\n" WITH_PAGE("<p>1</p>") ",\n" WITH_PAGE("<p>2</p>") "]}",
+		  "two texts for pages/gate.en.html", 3 },
 		{ "{\"items\": [\n\n{\"id\": \"#a\", \"target\": {\"selector\": " POINT "}}]}",
 		  "has no title", 3 },
 		{ "{\"items\": [\n{\"id\": \"#a\", \"body\": [{\"value\": \"x\", \"purpose\": "
@@ -279,6 +286,58 @@ static void names_the_place_of_what_it_refuses(void **state)
 				 told.first.line);
 		CHECK(nothing_is_left());
 	}
+}
+
+/* More annotations than a release has parts, and more bodies than a part has texts: refused where
+ * there are too many, before comparing each with all others takes hours. */
+static void refuses_more_than_a_release_can_have(void **state)
+{
+	struct annotations_imported report;
+	struct buffer text;
+
+	(void)state;
+	buffer_init(&text, 1 << 20);
+	buffer_put_text(&text, "[");
+	for (int i = 0; i <= INFO_PARTS_MAX; i++) {
+		char item[300];
+
+		snprintf(item, sizeof(item), "%s\n" ITEM("#a%d", POINT), i ? "," : "", i);
+		buffer_put_text(&text, item);
+	}
+	buffer_put_text(&text, "]");
+	buffer_put_u8(&text, 0);
+	write_text("exchange.jsonld", (char *)text.data);
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(file, INFO_PARTS_MAX + 2, "at most as many parts"));
+	CHECK(nothing_is_left());
+
+	text.size = 0;
+	buffer_put_text(&text,
+			"{\"id\": \"#a\", \"target\": {\"selector\": " POINT "}, \"body\": [{}");
+	for (int i = 0; i < 20 * INFO_LANGUAGES_MAX; i++)
+		buffer_put_text(&text, ", {}");
+	buffer_put_text(&text, "]}");
+	buffer_put_u8(&text, 0);
+	write_text("exchange.jsonld", (char *)text.data);
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(file, 1, "over 1280 bodies"));
+	buffer_finish(&text);
+}
+
+/* The folder of the file may be a stranger's. */
+static void brings_in_no_picture_that_is_a_link(void **state)
+{
+	struct annotations_imported report;
+	char link[200];
+
+	(void)state;
+	write_text("exchange.jsonld", ITEM("#a", POINT));
+	snprintf(link, sizeof(link), "%s/pictures/private.png", folder);
+	CHECK(symlink("/etc/passwd", link) == 0);
+	CHECK(import_with(&report, false, false) == -EINVAL);
+	CHECK(was_told(file, 0, "pictures/private.png cannot be read"));
+	CHECK(nothing_is_left());
+	CHECK(unlink(link) == 0);
 }
 
 #define COMMENT(id, body, target)                                                                  \
@@ -586,6 +645,8 @@ int main(void)
 		IN_A_FOLDER(refuses_a_folder_that_is_at_fault),
 		IN_A_FOLDER(takes_what_another_tool_wrote),
 		IN_A_FOLDER(names_the_place_of_what_it_refuses),
+		IN_A_FOLDER(refuses_more_than_a_release_can_have),
+		IN_A_FOLDER(brings_in_no_picture_that_is_a_link),
 		IN_A_FOLDER(takes_the_comments_of_a_manifest),
 		IN_A_FOLDER(refuses_a_manifest_without_comments),
 		IN_A_FOLDER(writes_a_manifest_that_comes_back),
