@@ -72,7 +72,8 @@ static cJSON *add_object(struct exporter *e, cJSON *parent, const char *key)
 
 /* ---- credits */
 
-/* Texts by language become language-tagged strings. */
+/* Texts by language become language-tagged strings. Where there are no parts, nobody has checked
+ * that they are texts. */
 static cJSON *tagged(struct exporter *e, const cJSON *said)
 {
 	cJSON *array;
@@ -81,7 +82,7 @@ static cJSON *tagged(struct exporter *e, const cJSON *said)
 		return cJSON_Duplicate(said, true);
 	array = cJSON_CreateArray();
 	for (const cJSON *one = said->child; one && array; one = one->next) {
-		cJSON *value = add_object(e, array, NULL);
+		cJSON *value = cJSON_IsString(one) ? add_object(e, array, NULL) : NULL;
 
 		if (value) {
 			add_text(e, value, "@value", one->valuestring);
