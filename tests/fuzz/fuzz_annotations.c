@@ -1,6 +1,8 @@
 /* A file of annotations of anybody's: refused with a diagnostic and nothing left behind, or a
- * content folder that goes out again. */
+ * content folder that goes out again. What goes out comes in as the same; as a manifest, which
+ * cannot say all, it is taken or refused. */
 #include <errno.h>
+#include <ftw.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,10 +11,12 @@
 #include "pipeline/content/annotations.h"
 #include "pipeline/content/annotations_export.h"
 #include "pipeline/content/annotations_import.h"
+#include "tests/fuzz/scratch.h"
+#include "tests/fuzz/small_png.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-static char base[64], file[100], folder[100];
+static char folder[100], again[100]; /* that imports make */
 
 /* Each says something. Returns how many are errors, and empties the list. */
 static uint32_t count_errors(struct diagnostics *diagnostics)
@@ -29,64 +33,120 @@ static uint32_t count_errors(struct diagnostics *diagnostics)
 	return errors;
 }
 
-static void clean(void)
+static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *place)
 {
-	char command[150];
+	(void)info;
+	(void)kind;
+	(void)place;
+	return remove(path);
+}
 
-	snprintf(command, sizeof(command), "rm -rf %s", base);
-	if (system(command) != 0)
+static void remove_folder(const char *path)
+{
+	if (nftw(path, remove_one, 8, FTW_DEPTH | FTW_PHYS) != 0)
 		abort();
 }
 
-/* A file written as any tool writes one: it need not outlive the power. */
-static void write_input(const uint8_t *data, size_t size)
-{
-	FILE *out = fopen(file, "wb");
-
-	if (!out || fwrite(data, 1, size, out) != size || fclose(out) != 0)
-		abort();
-}
-
+/* Beside the inputs are a picture and one that is none. */
 static void begin(void)
 {
-	snprintf(base, sizeof(base), "/tmp/gopura-fuzz-XXXXXX");
-	if (!mkdtemp(base) || atexit(clean) != 0)
+	scratch_begin();
+	if (mkdir(scratch_path("pictures"), 0700) < 0)
 		abort();
-	snprintf(file, sizeof(file), "%s/in.jsonld", base);
-	snprintf(folder, sizeof(folder), "%s/content", base);
+	scratch_write("pictures/a.png", small_png, sizeof(small_png));
+	scratch_write("pictures/b.png", small_png, sizeof(small_png) - 20);
+	snprintf(folder, sizeof(folder), "%s", scratch_path("content"));
+	snprintf(again, sizeof(again), "%s", scratch_path("again"));
+}
+
+/* Returns whether the file was taken. */
+static bool import(struct annotations_imported *report, const char *name, const char *into,
+		   size_t size)
+{
+	struct diagnostics diagnostics = { .max = INFO_DIAGNOSTICS_MAX };
+	char file[128];
+	const struct annotations_import_options options = { .file = file,
+							    .folder = into,
+							    .y_is_up = size / 2 % 2,
+							    .skip_unknown = size % 2,
+							    .diagnostics = &diagnostics };
+	uint32_t errors;
+	int rc;
+
+	snprintf(file, sizeof(file), "%s", scratch_path(name));
+	rc = annotations_import(report, &options);
+	errors = count_errors(&diagnostics);
+	if ((rc == 0) != (errors == 0) || (rc != 0 && (rc != -EINVAL || access(into, F_OK) == 0)))
+		abort();
+	return rc == 0;
+}
+
+/* Into name; manifest_base as in the options. */
+static void export(struct annotations *out, const char *from, const char *manifest_base,
+		   const char *name)
+{
+	struct diagnostics diagnostics = { .max = INFO_DIAGNOSTICS_MAX };
+	const struct annotations_export_options options = { .folder = from,
+							    .manifest_base = manifest_base,
+							    .diagnostics = &diagnostics };
+
+	if (annotations_export(out, &options) != 0 || count_errors(&diagnostics) > 0)
+		abort();
+	scratch_write(name, out->json.data, out->json.size);
+}
+
+static void comes_back(void)
+{
+	struct annotations first, second;
+	struct annotations_imported report;
+
+	export(&first, folder, NULL, "out.jsonld");
+	if (!import(&report, "out.jsonld", again, 0) || report.part_count != first.count)
+		abort();
+	export(&second, again, NULL, "out.jsonld");
+	if (first.json.size != second.json.size ||
+	    memcmp(first.json.data, second.json.data, first.json.size) != 0)
+		abort();
+	annotations_finish(&first);
+	annotations_finish(&second);
+	remove_folder(again);
+}
+
+/* With scans that are turned, sheared and in their place. */
+static void is_a_manifest(void)
+{
+	static const char ini[] = "[model]\nscans = a.ply b.glb site.aln\nunit = m\n";
+	static const char site[] = "4\na.ply\n#\n0 -2 0 5\n2 0 0 6\n0 0 2 7\n0 0 0 1\n"
+				   "a.ply\n#\n1 0.5 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+				   "a.ply\n#\n1 0 0 0\n0 0 -1 0\n0 1 0 0\n0 0 0 1\n"
+				   "a.ply\n#\n0 0 1 0\n0 -1 0 0\n1 0 0 0\n0 0 0 1\n0\n";
+	struct annotations manifest;
+	struct annotations_imported report;
+
+	scratch_write("content/temple.ini", (const uint8_t *)ini, sizeof(ini) - 1);
+	scratch_write("content/site.aln", (const uint8_t *)site, sizeof(site) - 1);
+	scratch_write("content/a.ply", (const uint8_t *)"ply\n", 4);
+	scratch_write("content/b.glb", (const uint8_t *)"glTF", 4);
+	export(&manifest, folder, "https://example.org/t", "out.json");
+	if (import(&report, "out.json", again, 0)) {
+		if (report.part_count != manifest.count)
+			abort();
+		remove_folder(again);
+	}
+	annotations_finish(&manifest);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-	struct diagnostics diagnostics = { .max = INFO_DIAGNOSTICS_MAX };
-	const struct annotations_import_options options = { .file = file,
-							    .folder = folder,
-							    .skip_unknown = size % 2,
-							    .diagnostics = &diagnostics };
-	const struct annotations_export_options export = { .folder = folder,
-							   .diagnostics = &diagnostics };
 	struct annotations_imported report;
-	struct annotations annotations;
-	char command[150];
-	uint32_t errors;
-	int rc;
 
-	if (!base[0])
+	if (!scratch[0])
 		begin();
-	write_input(data, size);
-	rc = annotations_import(&report, &options);
-	errors = count_errors(&diagnostics);
-	if (rc != 0 && (rc != -EINVAL || errors == 0 || access(folder, F_OK) == 0))
-		abort();
-	if (rc != 0)
+	scratch_write("in.jsonld", data, size);
+	if (!import(&report, "in.jsonld", folder, size))
 		return 0;
-	if (annotations_export(&annotations, &export) != 0 ||
-	    annotations.count != report.part_count)
-		abort();
-	annotations_finish(&annotations);
-	count_errors(&diagnostics);
-	snprintf(command, sizeof(command), "rm -rf %s", folder);
-	if (system(command) != 0)
-		abort();
+	comes_back();
+	is_a_manifest();
+	remove_folder(folder);
 	return 0;
 }
