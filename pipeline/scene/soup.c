@@ -9,7 +9,7 @@
 #include "base/array.h"
 #include "geometry/vec.h"
 
-/* Past these many tests of a point in an ear, for the whole soup, polygons become fans. */
+/* Past these many tests of an ear or a point in it, for the whole soup, polygons become fans. */
 #define POLYGON_STEPS_MAX (1ull << 28)
 
 /* A matrix that mirrors turns the cofactors round. */
@@ -110,6 +110,7 @@ static bool is_ear(const struct polygon *polygon, uint32_t at, uint64_t *steps)
 	uint32_t after = polygon->left[(at + 1) % count];
 	const float *a = polygon->flat[before], *b = polygon->flat[tip], *c = polygon->flat[after];
 
+	++*steps;
 	if (!(area_of(a, b, c) > 0))
 		return false;
 	*steps += count;
@@ -137,17 +138,30 @@ static int cut(struct soup *soup, struct polygon *polygon, uint32_t at)
 	return rc;
 }
 
+/* Makes a fan of what is left, around the corner before `at`. */
+static int cut_fan(struct soup *soup, const struct polygon *polygon, uint32_t at)
+{
+	const uint32_t count = polygon->count, centre = at + count - 1;
+	int rc = 0;
+
+	for (uint32_t i = 1; i + 1 < count && rc == 0; i++)
+		rc = add_triangle(soup, polygon->corners, polygon->left[centre % count],
+				  polygon->left[(centre + i) % count],
+				  polygon->left[(centre + i + 1) % count]);
+	return rc;
+}
+
 static int cut_ears(struct soup *soup, struct polygon *polygon)
 {
 	uint32_t at = 0, failed = 0;
 	int rc = 0;
 
 	while (polygon->count >= 3 && rc == 0) {
-		/* Where no corner is an ear, the outline crosses itself: any will do. */
-		bool is_any = failed >= polygon->count || soup->polygon_steps > POLYGON_STEPS_MAX;
-
 		at %= polygon->count;
-		if (is_any || is_ear(polygon, at, &soup->polygon_steps)) {
+		if (soup->polygon_steps > POLYGON_STEPS_MAX)
+			return cut_fan(soup, polygon, at);
+		/* Where no corner is an ear, the outline crosses itself: any will do. */
+		if (failed >= polygon->count || is_ear(polygon, at, &soup->polygon_steps)) {
 			rc = cut(soup, polygon, at);
 			failed = 0;
 		} else {
