@@ -67,6 +67,28 @@ cJSON *tuf_content(enum tuf_type type, uint32_t version, int64_t expires_s)
 	return NULL;
 }
 
+cJSON *tuf_next_content(const struct tuf_file *last, enum tuf_type type, uint32_t version,
+			int64_t expires_s)
+{
+	cJSON *content = tuf_content(type, version, expires_s);
+	const cJSON *item, *members = last->json ? last->content : NULL;
+
+	cJSON_ArrayForEach(item, members)
+	{
+		cJSON *copy;
+
+		if (cJSON_GetObjectItemCaseSensitive(content, item->string))
+			continue;
+		copy = cJSON_Duplicate(item, true);
+		if (!cJSON_AddItemToObject(content, item->string, copy)) {
+			cJSON_Delete(copy);
+			cJSON_Delete(content);
+			return NULL;
+		}
+	}
+	return content;
+}
+
 cJSON *tuf_add_file(cJSON *to, const char *name, uint32_t version, struct bytes file)
 {
 	uint8_t hash[crypto_hash_sha256_BYTES];

@@ -22,6 +22,10 @@ struct cJSON *tuf_signer_key(const struct tuf_signer *signer);
 /* Returns the content of a file of that type with the members that all have, owned by the caller;
  * NULL: no memory. */
 struct cJSON *tuf_content(enum tuf_type type, uint32_t version, int64_t expires_s);
+/* Returns a content of the next version with all other members of the last one, which may be empty;
+ * owned by the caller; NULL: no memory. */
+struct cJSON *tuf_next_content(const struct tuf_file *last, enum tuf_type type, uint32_t version,
+			       int64_t expires_s);
 /* Adds what a timestamp or a snapshot says of a metadata file, or targets of a target: its length
  * and SHA-256; version 0: none. Returns the entry, borrowed; NULL: no memory. */
 struct cJSON *tuf_add_file(struct cJSON *to, const char *name, uint32_t version, struct bytes file);

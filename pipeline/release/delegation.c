@@ -337,7 +337,8 @@ static int change(const struct delegation_options *options,
 	const struct tuf_place place = place_of(options);
 	const struct tuf_change change = { .edit = edit,
 					   .context = context,
-					   .expires_s = clock_wall_s() + options->life_s };
+					   .expires_s = clock_wall_s() + options->life_s,
+					   .renews = edit == edit_nothing };
 	int rc = check_form(options);
 
 	return rc < 0 ? rc
@@ -448,6 +449,10 @@ int delegation_print(FILE *to, const struct delegation_options *options)
 	if (rc == 0 && folder.top.json) {
 		fprintf(to, "%s: targets.json version %u", options->release, folder.top.version);
 		print_until(to, &folder.top);
+		if (!folder.top_is_signed)
+			fputs("signed with a key that was exchanged since: if this list is as it "
+			      "should be, sign it anew with --renew\n",
+			      to);
 	} else if (rc == 0) {
 		fprintf(to, "%s: nothing is signed there yet\n", options->release);
 	}

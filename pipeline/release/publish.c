@@ -143,7 +143,8 @@ int publish_renew(const struct publish_target *target)
 		buffer_finish(&file);
 		return rc;
 	}
-	rc = release_files_renew(target->release, target->keys, timestamp_life_s(target));
+	rc = release_files_renew(target->release, target->keys_folder, target->keys,
+				 timestamp_life_s(target));
 	if (rc == 0)
 		rc = published_current(target, &current);
 	return rc < 0 ? rc : sign_tuf(target, &current);

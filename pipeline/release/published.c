@@ -38,7 +38,8 @@ int published_current(const struct publish_target *target, struct release *out)
 
 	*out = (struct release){ 0 };
 	if (!target->tuf_alone)
-		return release_files_current(out, target->release, target->keys);
+		return release_files_current(out, target->release, target->keys_folder,
+					     target->keys);
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	rc = published_file(&place, out, &file);
 	buffer_finish(&file);
@@ -74,7 +75,8 @@ int published_at(const struct publish_target *target, uint64_t sequence, struct 
 	const struct tuf_place place = published_place(target);
 
 	if (!target->tuf_alone)
-		return release_files_at(out, target->release, target->keys, sequence);
+		return release_files_at(out, target->release, target->keys_folder, target->keys,
+					sequence);
 	return look_back(&place, sequence, NULL, out);
 }
 
@@ -84,7 +86,8 @@ int published_before(const struct publish_target *target, const struct release *
 	const struct tuf_place place = published_place(target);
 
 	if (!target->tuf_alone)
-		return release_files_before(out, target->release, target->keys, current);
+		return release_files_before(out, target->release, target->keys_folder, target->keys,
+					    current);
 	return look_back(&place, current->sequence, current, out);
 }
 

@@ -78,8 +78,25 @@ int release_files_put(const char *release, const char *name, struct bytes bytes)
 	return rc < 0 ? rc : bytes_sync_folder_of(file.path);
 }
 
+/* Returns whether a release key of an earlier root signed the release. */
+static bool was_signed(struct release *out, const char *keys_folder, uint32_t newest,
+		       struct bytes release_file)
+{
+	struct trust_root earlier;
+	struct buffer file;
+	bool was = false;
+
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	for (uint32_t version = newest; !was && --version > 0;)
+		was = keys_read_root(&file, keys_folder, version) == 0 &&
+		      trust_root_first(&earlier, buffer_bytes(&file), NULL) == 0 &&
+		      release_decode(out, &earlier, release_file, NULL) == 0;
+	buffer_finish(&file);
+	return was;
+}
+
 static int read_release(struct release *out, const char *release, const char *name,
-			const struct publisher_keys *keys)
+			const char *keys_folder, const struct publisher_keys *keys)
 {
 	const char *why = "cannot be read";
 	char path[PATH_MAX];
@@ -92,6 +109,14 @@ static int read_release(struct release *out, const char *release, const char *na
 		rc = buffer_read_file(&file, path);
 	if (rc == 0)
 		rc = release_decode(out, &keys->trust, buffer_bytes(&file), &why);
+	if (rc == -EKEYREJECTED &&
+	    was_signed(out, keys_folder, keys->trust.version, buffer_bytes(&file))) {
+		log_warn("pipeline",
+			 "%s: signed with a release.key that was exchanged since, so only its "
+			 "number counts",
+			 path);
+		rc = -ENOENT;
+	}
 	buffer_finish(&file);
 	if (rc == -EKEYREJECTED)
 		log_error(
@@ -104,26 +129,26 @@ static int read_release(struct release *out, const char *release, const char *na
 	return rc;
 }
 
-int release_files_current(struct release *out, const char *release,
+int release_files_current(struct release *out, const char *release, const char *keys_folder,
 			  const struct publisher_keys *keys)
 {
-	return read_release(out, release, "release.json", keys);
+	return read_release(out, release, "release.json", keys_folder, keys);
 }
 
-int release_files_at(struct release *out, const char *release, const struct publisher_keys *keys,
-		     uint64_t sequence)
+int release_files_at(struct release *out, const char *release, const char *keys_folder,
+		     const struct publisher_keys *keys, uint64_t sequence)
 {
 	char name[64];
 
 	snprintf(name, sizeof(name), "history/%" PRIu64 ".json", sequence);
-	return read_release(out, release, name, keys);
+	return read_release(out, release, name, keys_folder, keys);
 }
 
-int release_files_before(struct release *out, const char *release,
+int release_files_before(struct release *out, const char *release, const char *keys_folder,
 			 const struct publisher_keys *keys, const struct release *current)
 {
 	for (uint64_t sequence = current->sequence; sequence-- > 1;) {
-		int rc = release_files_at(out, release, keys, sequence);
+		int rc = release_files_at(out, release, keys_folder, keys, sequence);
 
 		if (rc == 0 && !hash_equal(out->root, current->root))
 			return 0;
@@ -230,16 +255,18 @@ int release_files_write(const char *release, const char *keys_folder,
 	return rc;
 }
 
-int release_files_renew(const char *release, const struct publisher_keys *keys,
-			int64_t timestamp_life_s)
+int release_files_renew(const char *release, const char *keys_folder,
+			const struct publisher_keys *keys, int64_t timestamp_life_s)
 {
 	struct pending timestamp = { .fd = -1 };
 	struct release current;
 	char path[PATH_MAX];
 	struct buffer file;
-	int rc = release_files_current(&current, release, keys);
+	int rc = release_files_current(&current, release, keys_folder, keys);
 
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (rc == 0)
+		rc = copy_roots(release, keys_folder, keys->trust.version);
 	if (rc == 0)
 		rc = make_path(path, release, "release.json");
 	if (rc == 0)

@@ -25,6 +25,16 @@ static int complain(const char *release, const char *name, int rc)
 	return rc;
 }
 
+static int refuse_exchanged(const struct tuf_folder *folder, const char *what)
+{
+	log_error("pipeline",
+		  "%s/tuf: %s is signed with a key that was exchanged since, and says what others "
+		  "may publish or have published: the museum looks at it by `gopura-content "
+		  "delegate RELEASE --keys FOLDER`, and signs it anew with --renew",
+		  folder->place.release, what);
+	return -EKEYREJECTED;
+}
+
 /* ---- the folder */
 
 /* Makes all folders of a path below the release. */
@@ -104,29 +114,6 @@ static int put_target(const struct tuf_place *place, struct bytes release_file)
 
 /* ---- contents */
 
-/* Returns a content of the next version with all other members of the last one; NULL: no memory. */
-static cJSON *next_content(const struct tuf_file *last, enum tuf_type type, uint32_t version,
-			   int64_t expires_s)
-{
-	cJSON *content = tuf_content(type, version, expires_s);
-	const cJSON *item, *members = last->json ? last->content : NULL;
-
-	cJSON_ArrayForEach(item, members)
-	{
-		cJSON *copy;
-
-		if (cJSON_GetObjectItemCaseSensitive(content, item->string))
-			continue;
-		copy = cJSON_Duplicate(item, true);
-		if (!cJSON_AddItemToObject(content, item->string, copy)) {
-			cJSON_Delete(copy);
-			cJSON_Delete(content);
-			return NULL;
-		}
-	}
-	return content;
-}
-
 static cJSON *drop_unless(cJSON *content, bool whole)
 {
 	if (whole)
@@ -143,12 +130,21 @@ static cJSON *object_in(cJSON *content, const char *name)
 	return object ? object : cJSON_AddObjectToObject(content, name);
 }
 
+/* The targets of a key that was exchanged are carried on only if somebody looked at them. */
+static const struct tuf_file *last_top(const struct tuf_folder *folder, bool renews)
+{
+	static const struct tuf_file none = { .json = NULL };
+
+	return folder->top_is_signed || renews ? &folder->top : &none;
+}
+
 static cJSON *naming_content(const struct tuf_folder *folder, const struct release *what,
 			     struct bytes release_file)
 {
 	const char *target = tuf_folder_target(&folder->place);
-	cJSON *content = next_content(tuf_folder_naming(folder), TUF_TARGETS,
-				      (uint32_t)what->sequence, what->expires_s);
+	const struct tuf_file *last = tuf_folder_naming(folder);
+	cJSON *content = tuf_next_content(last == &folder->top ? last_top(folder, false) : last,
+					  TUF_TARGETS, (uint32_t)what->sequence, what->expires_s);
 	cJSON *all = object_in(content, "targets"), *custom;
 	char root[HASH_HEX_BYTES];
 
@@ -187,6 +183,7 @@ struct next {
 	struct tuf_staged files[TUF_TYPES];
 	const char *unsigned_folder;
 	int64_t timestamp_life_s;
+	bool renews; /* as struct tuf_change has it */
 };
 
 static int stage(struct next *next, enum tuf_type type, uint32_t version, cJSON *content)
@@ -209,13 +206,23 @@ static uint32_t last_snapshot(const struct tuf_folder *folder)
 	return meta ? tuf_meta_version(meta) : 0;
 }
 
-/* What others published must not be lost with a snapshot that cannot be trusted. */
-static int check_snapshot(const struct tuf_folder *folder)
+/* Returns whether the entries of the last snapshot go into the next one. */
+static bool carries_on(const struct next *next)
 {
+	return next->folder.snapshot_is_signed ||
+	       (next->renews && next->folder.snapshot_was_signed);
+}
+
+/* What others published must not be lost with a snapshot that cannot be trusted. */
+static int check_snapshot(const struct next *next)
+{
+	const struct tuf_folder *folder = &next->folder;
 	const cJSON *meta = cJSON_GetObjectItemCaseSensitive(folder->snapshot.content, "meta");
 
-	if (!folder->snapshot.json || folder->snapshot_is_signed || cJSON_GetArraySize(meta) < 2)
+	if (!folder->snapshot.json || carries_on(next) || cJSON_GetArraySize(meta) < 2)
 		return 0;
+	if (folder->snapshot_was_signed)
+		return refuse_exchanged(folder, "the last snapshot");
 	log_error(
 		"pipeline",
 		"%s/tuf: the last snapshot is not signed with the keys of the newest root, and it "
@@ -232,7 +239,7 @@ static int stage_naming(struct next *next, uint32_t version, int64_t expires_s, 
 	const struct tuf_file none = { .json = NULL };
 	const struct tuf_folder *folder = &next->folder;
 	const uint32_t last = last_snapshot(folder);
-	int rc = check_snapshot(folder);
+	int rc = check_snapshot(next);
 
 	*snapshot = last + 1 > version ? last + 1 : version;
 	if (rc < 0)
@@ -240,12 +247,11 @@ static int stage_naming(struct next *next, uint32_t version, int64_t expires_s, 
 	else
 		rc = stage(next, TUF_TARGETS, version, content);
 	if (rc == 0)
-		rc = stage(
-			next, TUF_SNAPSHOT, *snapshot,
-			naming(next_content(folder->snapshot_is_signed ? &folder->snapshot : &none,
-					    TUF_SNAPSHOT, *snapshot, expires_s),
-			       tuf_folder_naming_name(folder), version, &next->files[TUF_TARGETS],
-			       !next->unsigned_folder));
+		rc = stage(next, TUF_SNAPSHOT, *snapshot,
+			   naming(tuf_next_content(carries_on(next) ? &folder->snapshot : &none,
+						   TUF_SNAPSHOT, *snapshot, expires_s),
+				  tuf_folder_naming_name(folder), version,
+				  &next->files[TUF_TARGETS], !next->unsigned_folder));
 	return rc;
 }
 
@@ -274,10 +280,10 @@ static int stage_timestamp(struct next *next, uint32_t snapshot)
 		tuf_staged_finish(&kept);
 		return complain(next->folder.place.release, "tuf", rc);
 	}
-	content =
-		naming(next_content(&none, TUF_TIMESTAMP, version, now_s + next->timestamp_life_s),
-		       "snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
-		       !is_new || !next->unsigned_folder);
+	content = naming(
+		tuf_next_content(&none, TUF_TIMESTAMP, version, now_s + next->timestamp_life_s),
+		"snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
+		!is_new || !next->unsigned_folder);
 	/* A member of ours, which other clients ignore: terminals know then that it is not earlier.
 	 */
 	if (content && !cJSON_AddNumberToObject(content, "issued_s", (double)now_s))
@@ -366,7 +372,11 @@ static int begin(struct next *next, const struct tuf_place *place, int *fd)
 	if (*fd < 0)
 		return *fd;
 	rc = signing_read(&next->signing, place->keys_folder);
-	return rc < 0 ? rc : tuf_folder_open(&next->folder, place);
+	if (rc == 0)
+		rc = tuf_folder_open(&next->folder, place);
+	if (rc == 0 && !next->renews && tuf_folder_needs_renewal(&next->folder))
+		rc = refuse_exchanged(&next->folder, "targets.json");
+	return rc;
 }
 
 /* Writes what was made if rc is 0, unlocks and frees. Returns rc, or what failed. */
@@ -401,7 +411,8 @@ static int change_all(struct next *next, const struct tuf_change *change)
 {
 	const struct tuf_folder *folder = &next->folder;
 	const uint32_t version = folder->top_version + 1;
-	cJSON *content = next_content(&folder->top, TUF_TARGETS, version, change->expires_s);
+	cJSON *content = tuf_next_content(last_top(folder, change->renews), TUF_TARGETS, version,
+					  change->expires_s);
 	uint32_t snapshot;
 	int rc = object_in(content, "targets") ? 0 : -ENOMEM;
 
@@ -419,7 +430,8 @@ int release_tuf_change(const struct tuf_place *place, const struct tuf_change *c
 		       int64_t timestamp_life_s, const char *unsigned_folder)
 {
 	struct next next = { .unsigned_folder = unsigned_folder,
-			     .timestamp_life_s = timestamp_life_s };
+			     .timestamp_life_s = timestamp_life_s,
+			     .renews = change->renews };
 	int fd, rc = begin(&next, place, &fd);
 
 	if (rc == 0)
@@ -514,7 +526,8 @@ static int check_staged(const struct next *next)
 
 int release_tuf_add_signatures(const struct tuf_place *place, const char *staged_folder)
 {
-	struct next next = { .unsigned_folder = NULL };
+	/* What is carried on was decided when it was staged. A role needs valid delegations. */
+	struct next next = { .renews = !place->role || !place->role[0] };
 	int fd, rc = begin(&next, place, &fd);
 
 	if (rc == 0)

@@ -34,6 +34,9 @@ struct tuf_change {
 	int (*edit)(void *context, const struct tuf_folder *folder, struct cJSON *content);
 	void *context;
 	int64_t expires_s; /* of targets.json and the snapshot, since 1970 */
+	/* Somebody looked at what there is, so it is carried on even if a key signed it that was
+	 * exchanged since. Otherwise -EKEYREJECTED. */
+	bool renews;
 };
 
 /* Signs the next version of targets.json, with snapshot and timestamp; the rest as

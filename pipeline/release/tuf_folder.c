@@ -137,18 +137,51 @@ static uint32_t snapshot_version(const struct tuf_folder *folder, const char *ro
 	return meta ? tuf_meta_version(meta) : 0;
 }
 
+/* Returns whether the keys of an earlier root signed a file. */
+static bool was_signed(const struct tuf_folder *folder, const struct tuf_file *file,
+		       enum tuf_type type)
+{
+	const char *why;
+	struct buffer bytes;
+	bool was = false;
+
+	buffer_init(&bytes, TUF_FOLDER_FILE_BYTES_MAX);
+	for (uint32_t version = folder->root.version; !was && --version > 0;) {
+		struct tuf_file root = { 0 };
+
+		was = keys_read_tuf_root(&bytes, folder->place.keys_folder, version) == 0 &&
+		      tuf_file_parse(&root, buffer_bytes(&bytes), TUF_ROOT, &why) == 0 &&
+		      tuf_file_verify(file, tuf_root_keys(&root), tuf_root_role(&root, type)) == 0;
+		tuf_file_finish(&root);
+	}
+	buffer_finish(&bytes);
+	return was;
+}
+
+static bool has_more_than_one_release(const struct tuf_file *file)
+{
+	const cJSON *targets = cJSON_GetObjectItemCaseSensitive(file->content, "targets");
+
+	return cJSON_GetArraySize(targets) > 1 ||
+	       cJSON_GetObjectItemCaseSensitive(file->content, "delegations");
+}
+
+bool tuf_folder_needs_renewal(const struct tuf_folder *folder)
+{
+	return folder->top.json && !folder->top_is_signed &&
+	       has_more_than_one_release(&folder->top);
+}
+
 /* Drops a targets file that is signed by none of the keys that may do so, if nothing is lost with
  * it but one release: the keys may have changed. */
 static int check_targets(struct tuf_folder *folder, struct tuf_file *file, const char *name,
 			 const cJSON *keys, const cJSON *role)
 {
-	const cJSON *targets = cJSON_GetObjectItemCaseSensitive(file->content, "targets");
 	int rc = file->json ? tuf_file_verify(file, keys, role) : 0;
 
 	if (rc == 0)
 		return 0;
-	if (cJSON_GetArraySize(targets) > 1 ||
-	    cJSON_GetObjectItemCaseSensitive(file->content, "delegations"))
+	if (has_more_than_one_release(file))
 		return complain(folder, name, rc,
 				"the last one is not signed with the keys of the newest root, and "
 				"it has more than this release: sign it with these keys first");
@@ -160,16 +193,32 @@ static int check_targets(struct tuf_folder *folder, struct tuf_file *file, const
 	return 0;
 }
 
+static bool is_signed(const struct tuf_folder *folder, const struct tuf_file *file,
+		      enum tuf_type type)
+{
+	return tuf_file_verify(file, tuf_root_keys(&folder->root),
+			       tuf_root_role(&folder->root, type)) == 0;
+}
+
 static int open_top(struct tuf_folder *folder)
 {
 	int rc;
 
 	folder->top_version = snapshot_version(folder, "targets");
 	rc = parse_version(folder, folder->top_version, "targets", TUF_TARGETS, &folder->top);
-	return rc < 0 ? rc
-		      : check_targets(folder, &folder->top, "targets.json",
-				      tuf_root_keys(&folder->root),
-				      tuf_root_role(&folder->root, TUF_TARGETS));
+	folder->top_is_signed =
+		rc == 0 && folder->top.json && is_signed(folder, &folder->top, TUF_TARGETS);
+	if (rc < 0 || !folder->top.json || folder->top_is_signed)
+		return rc;
+	if (!was_signed(folder, &folder->top, TUF_TARGETS))
+		return check_targets(folder, &folder->top, "targets.json",
+				     tuf_root_keys(&folder->root),
+				     tuf_root_role(&folder->root, TUF_TARGETS));
+	log_warn("pipeline",
+		 "%s/tuf: the last targets.json is signed with a key that was exchanged since%s",
+		 folder->place.release,
+		 tuf_folder_needs_renewal(folder) ? "" : ", so only its number counts");
+	return 0;
 }
 
 const cJSON *tuf_folder_delegations(const struct tuf_folder *folder)
@@ -254,9 +303,10 @@ int tuf_folder_open(struct tuf_folder *out, const struct tuf_place *place)
 	if (rc == 0 && meta)
 		rc = parse_version(out, tuf_meta_version(meta), "snapshot", TUF_SNAPSHOT,
 				   &out->snapshot);
-	out->snapshot_is_signed = rc == 0 && out->snapshot.json &&
-				  tuf_file_verify(&out->snapshot, tuf_root_keys(&out->root),
-						  tuf_root_role(&out->root, TUF_SNAPSHOT)) == 0;
+	out->snapshot_is_signed =
+		rc == 0 && out->snapshot.json && is_signed(out, &out->snapshot, TUF_SNAPSHOT);
+	out->snapshot_was_signed = rc == 0 && out->snapshot.json && !out->snapshot_is_signed &&
+				   was_signed(out, &out->snapshot, TUF_SNAPSHOT);
 	if (rc == 0)
 		rc = open_top(out);
 	return rc == 0 && has_role(out) ? open_own(out) : rc;
@@ -304,9 +354,11 @@ static int read_named(const struct tuf_folder *folder, const struct tuf_file *na
 int tuf_folder_current(const struct tuf_folder *folder, struct release *out, struct buffer *file)
 {
 	const struct tuf_file *naming = tuf_folder_naming(folder);
+	int rc;
 
 	*out = (struct release){ 0 };
-	return naming->json ? read_named(folder, naming, out, file) : -ENOENT;
+	rc = naming->json ? read_named(folder, naming, out, file) : -ENOENT;
+	return rc == 0 && !has_role(folder) && !folder->top_is_signed ? -ENOENT : rc;
 }
 
 int tuf_folder_at(const struct tuf_folder *folder, uint64_t version, struct release *out,

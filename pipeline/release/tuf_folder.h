@@ -20,11 +20,13 @@ struct tuf_place {
 struct tuf_folder {
 	struct tuf_place place;
 	struct tuf_file root;
-	/* Empty where there is none yet. Timestamp and snapshot may be signed by keys that the root
-	 * does not name any more; snapshot_is_signed says so of the snapshot. */
-	struct tuf_file timestamp, snapshot;
-	bool snapshot_is_signed;
-	struct tuf_file top, own; /* targets.json; the role's file, empty for the top itself */
+	/* Empty where there is none yet. own: the role's file, empty for the top itself, which is
+	 * targets.json. */
+	struct tuf_file timestamp, snapshot, top, own;
+	/* Timestamp, snapshot and top may be signed by keys that the root does not name any more.
+	 * is_signed: by its keys; was_signed: by those of an earlier root. The top is one of both.
+	 */
+	bool snapshot_is_signed, snapshot_was_signed, top_is_signed;
 	/* The versions that were published last, also of files that the root's keys have not
 	 * signed; 0: none. */
 	uint32_t top_version, own_version;
@@ -58,8 +60,13 @@ bool tuf_folder_role_has_path(const struct cJSON *role, const char *target);
 must_check int tuf_folder_read_role(const struct tuf_folder *folder, const char *name,
 				    struct tuf_file *out, uint32_t *version);
 
+/* What becomes of other releases and roles must not be decided by a key that was exchanged. Returns
+ * whether targets.json is signed by such a key, and has more than one release. */
+bool tuf_folder_needs_renewal(const struct tuf_folder *folder);
+
 /* Reads the release that is published now into *out and its release.json into *file, cleared first.
- * -ENOENT: none is. Other errors are logged. */
+ * -ENOENT: none is; or one that is signed by keys that were exchanged, which *out is then. Other
+ * errors are logged. */
 must_check int tuf_folder_current(const struct tuf_folder *folder, struct release *out,
 				  struct buffer *file);
 /* The same for an earlier version of the file that names the release. -ENOENT: there is none, or
