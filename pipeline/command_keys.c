@@ -1,17 +1,21 @@
-/* gopura-content keys: creates the signing keys of a content folder, or shows where they are. */
+/* gopura-content keys: creates the signing keys of a content folder, exchanges them, or shows where
+ * they are. */
 #include "pipeline/commands.h"
 
 #include <getopt.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
+#include "pipeline/keys/keys_exchange.h"
 #include "pipeline/keys/keys_place.h"
 #include "pipeline/keys/keys_team.h"
 #include "pipeline/keys/keys_tuf.h"
 
 static const char help[] =
-	"gopura-content keys: make the signing keys of a content folder, or show where they are\n"
+	"gopura-content keys: make or exchange the signing keys of a content folder, or show where they are\n"
 	"\n"
 	"usage: gopura-content keys DIR [OPTIONS]\n"
 	"       gopura-content keys --keys FOLDER [OPTIONS]     keys of no content folder, as a museum's\n"
@@ -35,6 +39,13 @@ static const char help[] =
 	"                  needs ROLE.pub\n"
 	"  --from FOLDER   with --team: what the museum handed over\n"
 	"\n"
+	"A key was stolen, or is old (docs/tuf.md):\n"
+	"\n"
+	"  --exchange KEY  make a new KEY.key and sign the next root, which names it in place of the old one:\n"
+	"                  root, release, snapshot or timestamp. Several times: several keys. root.key must\n"
+	"                  be there. The old key becomes KEY.key.old; it signs nothing any more. Then publish,\n"
+	"                  so that terminals learn of it\n"
+	"\n"
 	"Keep a copy of root.key in a safe place, off this machine; publishing needs only the other\n"
 	"two. Whoever has release.key can publish to every terminal.\n"
 	"\n"
@@ -42,12 +53,14 @@ static const char help[] =
 	"  gopura-content keys temple\n"
 	"  gopura-content keys temple --keys /media/safe/temple\n"
 	"  gopura-content keys --keys museum --museum\n"
-	"  gopura-content keys angkor --team angkor --from handed-over\n";
+	"  gopura-content keys angkor --team angkor --from handed-over\n"
+	"  gopura-content keys temple --exchange release --exchange timestamp\n";
 
 struct settings {
 	const char *content_folder, *given; /* may be NULL, but one of them */
 	const char *role, *from;            /* of a team; NULL: of none */
 	bool tuf, museum;
+	unsigned exchanged; /* 1 << enum exchange_key of each */
 };
 
 static void print_key(const char *what, const uint8_t key[KEY_BYTES])
@@ -78,6 +91,95 @@ static int run_team(const struct settings *settings)
 	       role, folder, folder, role, role, role);
 	return EXIT_SUCCESS;
 }
+
+/* ---- exchanging */
+
+static unsigned key_named(const char *name)
+{
+	for (int key = 0; key < EXCHANGE_KEYS; key++)
+		if (strcmp(name, exchange_key_names[key]) == 0)
+			return 1u << key;
+	return strcmp(name, "targets") == 0 ? 1u << EXCHANGE_RELEASE : 0;
+}
+
+/* "root.key, release.key" */
+static void print_names(unsigned keys, const char *end)
+{
+	const char *before = "";
+
+	for (int key = 0; key < EXCHANGE_KEYS; key++) {
+		if (!(keys & 1u << key))
+			continue;
+		printf("%s%s.key%s", before, exchange_key_names[key], end);
+		before = ", ";
+	}
+}
+
+static void print_roots(const struct keys_exchanged *exchanged)
+{
+	const time_t time_s = (time_t)exchanged->expires_s;
+	char date[32] = "";
+	struct tm tm;
+
+	if (exchanged->root > 0)
+		printf("root/%u.json", exchanged->root);
+	if (exchanged->tuf_root > 0)
+		printf("%stuf/%u.root.json", exchanged->root > 0 ? " and " : "",
+		       exchanged->tuf_root);
+	if (gmtime_r(&time_s, &tm))
+		strftime(date, sizeof(date), "%Y-%m-%d", &tm);
+	printf(" %s the new keys%s%s\n",
+	       exchanged->root > 0 && exchanged->tuf_root > 0 ? "name" : "names",
+	       exchanged->went_on ? "" : ", valid until ", exchanged->went_on ? "" : date);
+}
+
+/* What has to be done now that the folder of keys is in order. */
+static void print_next(const struct settings *settings, const struct keys_exchanged *exchanged,
+		       const char *folder)
+{
+	const unsigned root = 1u << EXCHANGE_ROOT;
+
+	if (exchanged->is_shared)
+		printf("next: gopura-content delegate RELEASE --keys %s --renew, so that terminals "
+		       "learn of it\n"
+		       "then hand over to the teams again: %s/tuf, and snapshot.key and "
+		       "timestamp.key if they sign these files themselves\n",
+		       folder, folder);
+	else
+		printf("next: gopura-content publish %s%s%s, so that terminals learn of it\n",
+		       settings->content_folder ? settings->content_folder : "DIR",
+		       settings->given ? " --keys " : "", settings->given ? folder : "");
+	printf("put root.key back into its safe place%s\n",
+	       settings->exchanged & root ? ", the new one, with a copy" : "");
+	if (exchanged->kept & root)
+		printf("destroy root.key.old and every copy of it: terminals that have not seen "
+		       "the new root still follow it\n");
+}
+
+static int run_exchange(const struct settings *settings)
+{
+	struct keys_exchanged exchanged;
+	char folder[PATH_MAX];
+	int rc = keys_open(NULL, folder, settings->content_folder, settings->given, NULL);
+
+	if (rc == 0)
+		rc = keys_exchange(&exchanged, folder, settings->exchanged);
+	if (rc < 0)
+		return EXIT_FAILURE;
+	printf("%s ", exchanged.went_on ? "finished the interrupted exchange of" : "exchanged");
+	print_names(settings->exchanged, "");
+	printf(" in %s\n", folder);
+	print_roots(&exchanged);
+	if (exchanged.kept) {
+		printf("the old keys, which sign nothing any more: ");
+		print_names(exchanged.kept, ".old");
+		printf("\n");
+	}
+	print_next(settings, &exchanged, folder);
+	return EXIT_SUCCESS;
+}
+
+/* ---- */
 
 static int run(const struct settings *settings)
 {
@@ -118,6 +220,8 @@ static const char *fault_of(const struct settings *settings)
 		return "--team goes with --from, the folder that the museum handed over";
 	if (settings->role && (settings->tuf || settings->museum))
 		return "give only one of --team, --tuf and --museum";
+	if (settings->exchanged && (settings->role || settings->tuf || settings->museum))
+		return "--exchange goes with no other option than --keys";
 	if (settings->role && !content_role_is_valid(settings->role))
 		return content_role_rule;
 	return NULL;
@@ -131,6 +235,7 @@ int command_keys(int argc, char **argv)
 		{ "museum", no_argument, NULL, 'm' },
 		{ "team", required_argument, NULL, 'T' },
 		{ "from", required_argument, NULL, 'f' },
+		{ "exchange", required_argument, NULL, 'x' },
 		{ "help", no_argument, NULL, 'h' },
 		{ NULL, 0, NULL, 0 },
 	};
@@ -155,6 +260,16 @@ int command_keys(int argc, char **argv)
 		case 'f':
 			settings.from = optarg;
 			break;
+		case 'x':
+			if (!key_named(optarg))
+				return command_wrong(
+					argv[0],
+					"--exchange takes root, release, snapshot or timestamp; "
+					"a team's key is exchanged by `gopura-content delegate`; "
+					"not ",
+					optarg);
+			settings.exchanged |= key_named(optarg);
+			break;
 		case 'h':
 			fputs(help, stdout);
 			return EXIT_SUCCESS;
@@ -168,5 +283,7 @@ int command_keys(int argc, char **argv)
 	fault = fault_of(&settings);
 	if (fault)
 		return command_wrong(argv[0], fault, "");
+	if (settings.exchanged)
+		return run_exchange(&settings);
 	return settings.role ? run_team(&settings) : run(&settings);
 }

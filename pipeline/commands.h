@@ -30,7 +30,7 @@ int command_hierarchy(int argc, char **argv);
 int command_import(int argc, char **argv);
 /* inspect: shows what an object, a file or a release contains. */
 int command_inspect(int argc, char **argv);
-/* keys: creates the signing keys, or shows where they are. */
+/* keys: creates or exchanges the signing keys, or shows where they are. */
 int command_keys(int argc, char **argv);
 /* publish: signs a release of what was built. */
 int command_publish(int argc, char **argv);

@@ -18,7 +18,7 @@ static const struct command commands[] = {
 	{ "inspect", "show what an object, a file or a release contains", command_inspect },
 	{ "annotations", "export parts and pages as W3C Web Annotations, or import them",
 	  command_annotations },
-	{ "keys", "make the signing keys of a content folder", command_keys },
+	{ "keys", "make or exchange the signing keys of a content folder", command_keys },
 	{ "delegate", "let the teams of several temples publish on one server", command_delegate },
 	{ "hierarchy", "make the multiresolution hierarchy of a content folder",
 	  command_hierarchy },

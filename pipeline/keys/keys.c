@@ -14,9 +14,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "format/metadata_sign.h"
-
-/* A root must stay valid longer than the terminals that were shipped with it live. */
-#define ROOT_LIFE_S (20ll * 365 * 86400)
+#include "pipeline/keys/exchange_folder.h"
 
 static const char *const role_names[] = { "root", "release", "timestamp" };
 
@@ -45,13 +43,18 @@ bool keys_is_key_file(int fd)
 
 /* Returns whether the key exists. An empty file is the remains of a power cut and does not
  * count. */
-static bool has_key(const char *folder, enum meta_role role)
+static bool has_named(const char *folder, const char *name)
 {
 	char path[PATH_MAX];
 	struct stat status;
 
-	return key_path(path, folder, role_names[role]) == 0 && lstat(path, &status) == 0 &&
+	return key_path(path, folder, name) == 0 && lstat(path, &status) == 0 &&
 	       !(S_ISREG(status.st_mode) && status.st_size == 0);
+}
+
+static bool has_key(const char *folder, enum meta_role role)
+{
+	return has_named(folder, role_names[role]);
 }
 
 static bool has_root(const char *folder)
@@ -107,14 +110,13 @@ int keys_write_private(const char *path, const char *text)
 	return rc;
 }
 
-static int write_key(const char *folder, const char *name, const uint8_t *seed)
+/* The first 32 bytes of a secret key of libsodium are its seed. */
+int keys_write_key(const char *path, const char *name, const struct signing_key *key)
 {
-	char path[PATH_MAX], text[192], hex[2 * crypto_sign_SEEDBYTES + 1];
-	int rc = key_path(path, folder, name);
+	char text[192], hex[2 * crypto_sign_SEEDBYTES + 1];
+	int rc;
 
-	if (rc < 0)
-		return rc;
-	sodium_bin2hex(hex, sizeof(hex), seed, crypto_sign_SEEDBYTES);
+	sodium_bin2hex(hex, sizeof(hex), key->secret, crypto_sign_SEEDBYTES);
 	snprintf(text, sizeof(text), "%s%s %s\n", key_mark, name, hex);
 	rc = keys_write_private(path, text);
 	sodium_memzero(text, sizeof(text));
@@ -124,19 +126,16 @@ static int write_key(const char *folder, const char *name, const uint8_t *seed)
 
 static int make_key(struct signing_key *key, const char *folder, const char *name)
 {
-	uint8_t seed[crypto_sign_SEEDBYTES];
-	int rc;
+	char path[PATH_MAX];
+	int rc = key_path(path, folder, name);
 
-	randombytes_buf(seed, sizeof(seed));
-	crypto_sign_seed_keypair(key->public_key, key->secret, seed);
-	rc = write_key(folder, name, seed);
-	sodium_memzero(seed, sizeof(seed));
-	return rc;
+	crypto_sign_keypair(key->public_key, key->secret);
+	return rc < 0 ? rc : keys_write_key(path, name, key);
 }
 
 static int write_root(const char *folder, const struct signing_key keys[3])
 {
-	struct trust_root root = { .version = 1, .expires_s = clock_wall_s() + ROOT_LIFE_S };
+	struct trust_root root = { .version = 1, .expires_s = clock_wall_s() + KEYS_ROOT_LIFE_S };
 	char path[PATH_MAX];
 	struct buffer file;
 	int rc;
@@ -228,9 +227,9 @@ int keys_named(struct signing_key *out, const char *folder, const char *name)
 	return rc;
 }
 
-int keys_read_root_key(struct signing_key *out, const char *folder)
+int keys_read_key(struct signing_key *out, const char *folder, const char *name)
 {
-	return has_key(folder, META_ROOT) ? read_key(out, folder, role_names[META_ROOT]) : -ENOENT;
+	return has_named(folder, name) ? read_key(out, folder, name) : -ENOENT;
 }
 
 /* Keys are created in this order. So a folder that has a later key without an earlier one is not an
@@ -314,13 +313,14 @@ int keys_read_root(struct buffer *out, const char *folder, uint32_t version)
 int keys_follow_roots(struct trust_root *trust, const char *folder, const char **why)
 {
 	struct buffer file;
-	int rc = 0;
+	int rc;
 
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
-	while (rc == 0 && keys_read_root(&file, folder, trust->version + 1) == 0)
-		rc = trust_root_next(trust, buffer_bytes(&file), why);
+	while ((rc = keys_read_root(&file, folder, trust->version + 1)) == 0 &&
+	       (rc = trust_root_next(trust, buffer_bytes(&file), why)) == 0)
+		;
 	buffer_finish(&file);
-	return rc;
+	return rc == -ENOENT ? 0 : rc;
 }
 
 static bool role_has(const struct role_keys *role, const struct signing_key *key)
@@ -331,7 +331,7 @@ static bool role_has(const struct role_keys *role, const struct signing_key *key
 	return false;
 }
 
-static int load_root(struct trust_root *trust, const char *folder)
+int keys_read_trust(struct trust_root *trust, const char *folder)
 {
 	const char *why = "unreadable";
 	struct buffer file;
@@ -356,7 +356,9 @@ int keys_load(struct publisher_keys *out, const char *folder)
 	*out = (struct publisher_keys){ 0 };
 	if (sodium_init() < 0)
 		return -EIO;
-	rc = load_root(&out->trust, folder);
+	rc = keys_read_trust(&out->trust, folder);
+	if (rc == 0)
+		rc = exchange_check(folder);
 	if (rc == 0)
 		rc = read_key(&out->release, folder, role_names[META_RELEASE]);
 	if (rc == 0)

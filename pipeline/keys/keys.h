@@ -12,6 +12,9 @@
 #include "format/metadata.h"
 #include "format/metadata_sign.h"
 
+/* A root must stay valid longer than the terminals that were shipped with it live: 20 years. */
+enum { KEYS_ROOT_LIFE_S = 20 * 365 * 86400 };
+
 struct publisher_keys {
 	struct signing_key release, timestamp;
 	struct trust_root trust; /* the newest root */
@@ -34,8 +37,8 @@ must_check int keys_sync_folder(const char *folder);
 must_check int keys_sync_parent(const char *folder);
 /* Reads what publishing needs and checks that the newest root names both keys. keys_finish frees
  * *out, and it is wiped on failure. -ENOENT: there is no root/1.json, or a key is missing. -EPERM:
- * others may read a key. -EBADMSG: damaged. -EKEYREJECTED: not the root's keys. Errors are logged,
- * except that there is no root/1.json. */
+ * others may read a key. -EBADMSG: damaged. -EKEYREJECTED: not the root's keys. -EBUSY: an exchange
+ * of keys was not finished. Errors are logged, except that there is no root/1.json. */
 must_check int keys_load(struct publisher_keys *out, const char *folder);
 void keys_finish(struct publisher_keys *keys); /* Wipes the keys. NULL is fine. */
 
@@ -45,14 +48,22 @@ must_check int keys_named(struct signing_key *out, const char *folder, const cha
 /* Writes a complete new file or none. It is never readable by others, not even for a moment. */
 must_check int keys_write_private(const char *path, const char *text);
 
-/* Reads root.key alone. -ENOENT: it is not in the folder. Other errors are logged. */
-must_check int keys_read_root_key(struct signing_key *out, const char *folder);
+/* Reads NAME.key alone, of which the caller wipes *out. -ENOENT: it is not in the folder. Other
+ * errors are logged. */
+must_check int keys_read_key(struct signing_key *out, const char *folder, const char *name);
+/* Writes a key of that name as keys_write_private does. Errors are logged. */
+must_check int keys_write_key(const char *path, const char *name, const struct signing_key *key);
 
 /* Reads root/VERSION.json into *out, cleared first. -ENOENT: there is none. */
 must_check int keys_read_root(struct buffer *out, const char *folder, uint32_t version);
 
+/* Reads the newest root, after all before it. -ENOENT: there is no root/1.json. Other errors are
+ * logged. */
+must_check int keys_read_trust(struct trust_root *trust, const char *folder);
+
 /* Verifies root/2.json, root/3.json, ... of folder in turn, starting after *trust, and updates
- * *trust. Returns the error of trust_root_next; *why is as in format/metadata.h. */
+ * *trust. Returns the error of trust_root_next, or of reading; *why is as in format/metadata.h
+ * after the first. */
 must_check int keys_follow_roots(struct trust_root *trust, const char *folder, const char **why);
 
 #endif

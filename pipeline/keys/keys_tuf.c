@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/log.h"
 #include "tuf/sign.h"
@@ -170,7 +171,7 @@ static int make_root(const char *folder, const struct publisher_keys *keys,
 	const uint32_t last = keys_last_tuf_root(folder);
 	struct tuf_signer signers[3] = { 0 };
 	struct signing_key root = { 0 };
-	int rc = keys_read_root_key(&root, folder);
+	int rc = keys_read_key(&root, folder, "root");
 
 	if (rc == -ENOENT)
 		log_error("pipeline",
@@ -245,12 +246,11 @@ int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version)
 
 uint32_t keys_last_tuf_root(const char *folder)
 {
-	struct buffer file;
-	uint32_t version = 1;
+	char path[PATH_MAX];
+	uint32_t version = 0;
 
-	buffer_init(&file, ROOT_BYTES_MAX);
-	while (keys_read_tuf_root(&file, folder, version) == 0)
-		version++;
-	buffer_finish(&file);
+	do
+		snprintf(path, sizeof(path), "%s/tuf/%u.root.json", folder, ++version);
+	while (access(path, F_OK) == 0);
 	return version - 1;
 }

@@ -14,6 +14,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "pipeline/keys/exchange_folder.h"
 #include "pipeline/keys/keys_tuf.h"
 #include "pipeline/release/release_files.h"
 #include "pipeline/release/tuf_staged.h"
@@ -371,7 +372,9 @@ static int begin(struct next *next, const struct tuf_place *place, int *fd)
 	*fd = rc < 0 ? rc : lock(place->release);
 	if (*fd < 0)
 		return *fd;
-	rc = signing_read(&next->signing, place->keys_folder);
+	rc = exchange_check(place->keys_folder);
+	if (rc == 0)
+		rc = signing_read(&next->signing, place->keys_folder);
 	if (rc == 0)
 		rc = tuf_folder_open(&next->folder, place);
 	if (rc == 0 && !next->renews && tuf_folder_needs_renewal(&next->folder))

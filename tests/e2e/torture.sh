@@ -18,6 +18,8 @@ shim=$PWD/build/tests/tools/failing_calls.so content=build/gopura-content
 tiny_content "$work/content" 10000 5000
 "$content" build "$work/content" --out "$work/release" --keys "$work/keys" --jobs 1 >"$work/log" 2>&1 || { cat "$work/log"; fail build; }
 cp -a "$work/release" "$work/reference"
+cp -a "$work/keys" "$work/both_forms"
+"$content" keys --keys "$work/both_forms" --tuf >"$work/log" 2>&1 || { cat "$work/log"; fail keys; }
 printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n' >"$work/gopura.conf"
 cp "$work/keys/root/1.json" "$work/"
 
@@ -27,6 +29,7 @@ use() {
 	shift
 	case $name in
 	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
+	exchange) command=("$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp) ;;
 	temple) command=("$content" temple --triangles 10000 --out "$work/new.ply") ;;
 	inspect) command=("$content" inspect "$work/release") ;;
 	verify) command=("$content" verify "$work/release") ;;
@@ -39,7 +42,8 @@ use() {
 }
 # prepare NAME: what a use begins with
 prepare() {
-	rm -rf "$work/new" "$work/fresh" "$work/made"
+	rm -rf "$work/new" "$work/fresh" "$work/made" "$work/exchanged"
+	[ "$1" != exchange ] || cp -a "$work/both_forms" "$work/exchanged"
 	[ "$1" = build ] || return 0
 	mkdir "$work/fresh"
 	cp -a "$work/content/." "$work/fresh/"
@@ -61,6 +65,9 @@ strain() {
 	case $1 in
 	publish | inspect | verify)
 		"$content" verify "$work/release" >"$work/said" 2>&1 || fault "$1: $2 call $4: the release is damaged" ;;
+	exchange)
+		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
+			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
 	build)
 		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
 			diff -rq "$work/reference/packs" "$work/made/packs" >>"$work/said" || fault "build: $2 call $4: the next one makes another release" ;;
@@ -82,7 +89,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys temple inspect verify import publish setup build}; do
+for name in ${USES:-keys exchange temple inspect verify import publish setup build}; do
 	all "$name" memory 12
 	all "$name" io 5  # EIO
 	all "$name" io 28 # ENOSPC

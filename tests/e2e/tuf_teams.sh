@@ -2,7 +2,8 @@
 # Several temples on one server, each signed by its own team: the commands of docs/tuf.md, as they stand there, lead from
 # nothing to two temples and two terminals that show each its own; python-tuf finds both. Then a team's key is exchanged,
 # stolen, joined by a second one; what is wrong changes nothing; a call on a file fails at each place in turn, and what is
-# published stays whole; a release is signed in two steps; a curator publishes for one team; a role is removed.
+# published stays whole; a release is signed in two steps; a curator publishes for one team; a role is removed; the museum
+# exchanges its keys.
 #
 #   STEP=1 tests/e2e/tuf_teams.sh     every call on a file fails, not one in 13
 set -eu
@@ -272,13 +273,16 @@ try "bayon leaves" delegate bayon --remove --invalidate
 says 'take nothing any more'
 refuses "bayon publishes" publish_as bayon --comment 'after its end'
 wait_for 30 "the terminal of Bayon to say so" grep -q 'there is no target bayon/release.json' bayon.log
-rm museum/snapshot.key
-try "another snapshot.key" gopura-content keys --keys museum --museum
+try "another snapshot.key" gopura-content keys --keys museum --exchange snapshot
+says 'next: gopura-content delegate RELEASE --keys museum --renew'
 [ -f museum/tuf/2.root.json ] || fail "there is no second root"
-try "asked twice" gopura-content keys --keys museum --museum
+try "what there is already" gopura-content keys --keys museum --museum
 [ ! -f museum/tuf/3.root.json ] || fail "a root was made for nothing"
-cp -r museum/tuf museum/snapshot.key museum/timestamp.key handed-over
-try "handed over" gopura-content keys angkor --keys angkor.keys --team angkor --from handed-over
+hand_over() {
+	cp -r museum/tuf museum/snapshot.key museum/timestamp.key handed-over
+	try "handed over" gopura-content keys angkor --keys angkor.keys --team angkor --from handed-over
+}
+hand_over
 grep -q '^targets = third.pem, angkor.key' angkor.keys/signing.ini || fail "the team's signing.ini was replaced"
 try "angkor goes on" publish_as angkor --comment 'without bayon'
 wait_for 30 "release after the second root" takes angkor 5 'without bayon'
@@ -288,5 +292,29 @@ cp -r museum/tuf angkor.keys/angkor.key angkor.keys/third.pem thief
 printf '[keys]\ntargets = angkor.key, third.pem\nsnapshot = snapshot.key\n' >thief/signing.ini
 refuses "the old snapshot.key" gopura-content publish angkor --out release --keys thief --comment 'by the one who left'
 says 'snapshot.key: its signature is by none'
+
+# ---- the museum exchanges all its keys: the list, which the old one signed, is carried on only if somebody says so
+cp -r museum old
+try "the snapshot.key" gopura-content keys --keys museum --exchange snapshot
+hand_over
+refuses "a release beside a snapshot of the old key" publish_as angkor --comment early
+says 'the last snapshot is signed with a key that was exchanged since'
+try "all keys" gopura-content keys --keys museum --exchange root --exchange release --exchange snapshot --exchange timestamp
+hand_over
+refuses "a release under a list of the old key" publish_as angkor --comment early
+says 'tuf: targets.json is signed with a key that was exchanged since, and says'
+refuses "another role beside a list of the old key" delegate chan --key rsa.pub
+says 'tuf: targets.json is signed with a key that was exchanged since, and says'
+try "the list" delegate
+says 'signed with a key that was exchanged since'
+says '^angkor signs'
+try "the list, anew" delegate --renew
+! grep -q 'exchanged since: if' log || fail "the list is still that of the old key"
+says 'release 5.angkor.json'
+try "the list, anew" verifies angkor
+try "after the exchange" publish_as angkor --comment 'by new keys of the museum'
+wait_for 30 "release after the exchange" takes angkor 6 'by new keys of the museum'
+refuses "the old release.key" gopura-content delegate release chan --key rsa.pub --keys old
+says 'by none of the keys\|not signed with the keys'
 stop_terminal angkor
 stop_terminal bayon

@@ -72,7 +72,7 @@ is_public() {
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;
 	pipeline/deform/*) names="deform deform_plan mesh_obj" ;;
-	pipeline/keys/*) names="keys keys_place keys_team keys_tuf signing" ;;
+	pipeline/keys/*) names="exchange_folder keys keys_exchange keys_place keys_team keys_tuf signing" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;
 	*) return 0 ;;
