@@ -62,8 +62,6 @@ static inline int coefficient_round(int coefficient, int factor)
 {
 	int rounded = (abs(coefficient) + (factor - 1) / 2) / factor * factor;
 
-	if (rounded > COEFFICIENT_MOST)
-		rounded = COEFFICIENT_MOST;
 	return coefficient < 0 ? -rounded : rounded;
 }
 

@@ -215,7 +215,7 @@ static int read_picture(struct coefficients *coefficients, const uint8_t *rgb)
 	return rc;
 }
 
-/* Leaves only the means of fragments that are not used; those are replaced when it is written. */
+/* Empties the fragments that are not used; their means are set when the file is written. */
 static void drop_unused(struct coefficients *coefficients)
 {
 	for (int i = 0; i < COEFFICIENT_PLANES; i++) {

@@ -217,11 +217,13 @@ static void writes_again_from_the_best_quality(void **state)
 
 static void says_when_the_buffer_is_full(void **state)
 {
-	struct stage stage = stage_make(200, 136, NULL);
+	struct stage stage = stage_make(512, 512, NULL);
 	struct buffer small;
 
 	(void)state;
-	buffer_init(&small, 1000);
+	buffer_init(&small, 1 << 15); /* some is written before it is full */
+	stage_write(&stage);
+	CHECK(stage.file.size > 1 << 15);
 	buffer_put_u8(&small, 1);
 	CHECK(fragment_jpeg_write(stage.jpeg, stage.qualities, &small) == -EFBIG);
 	CHECK(small.size == 1);
@@ -229,7 +231,7 @@ static void says_when_the_buffer_is_full(void **state)
 	stage_finish(&stage);
 }
 
-/* Rounded up, the largest coefficient of a checkerboard would be more than a JPEG can hold. */
+/* The largest coefficients, rounded up, must not be more than a JPEG can hold. */
 static void takes_the_hardest_contrasts(void **state)
 {
 	enum { SIDE = 48 };
@@ -239,9 +241,14 @@ static void takes_the_hardest_contrasts(void **state)
 	struct picture back;
 
 	(void)state;
-	for (uint32_t shift = 0; shift < 3; shift++) {
+	for (uint32_t shape = 0; shape < 6; shape++) {
+		uint32_t shift = shape / 2;
+		bool stripes = shape % 2;
+
 		for (uint32_t i = 0; i < SIDE * SIDE; i++)
-			memset(rgb + 3 * i, ((i % SIDE >> shift ^ i / SIDE >> shift) & 1) * 255, 3);
+			memset(rgb + 3 * i,
+			       ((i % SIDE >> shift ^ (stripes ? 0 : i / SIDE >> shift)) & 1) * 255,
+			       3);
 		CHECK(fragment_jpeg_create(&jpeg, rgb, SIDE, SIDE, 16, NULL) == 0);
 		for (uint8_t quality = 1; quality <= BEST; quality++) {
 			uint8_t qualities[9];
@@ -306,6 +313,12 @@ static void unused_fragments_take_little(void **state)
 	for (uint32_t i = 0; i < 512 * 512; i++)
 		if (i % 512 < 255)
 			CHECK(memcmp(stage.shown.rgba + 4 * i, rest.shown.rgba + 4 * i, 4) == 0);
+	/* An unused block repeats the one before it, here far from grey, up to the end of the row.
+	 */
+	for (uint32_t y = 8; y < 512; y += 64)
+		CHECK(memcmp(stage.shown.rgba + 4 * (y * 512 + 300),
+			     stage.shown.rgba + 4 * (y * 512 + 508), 3) == 0 &&
+		      stage.shown.rgba[4 * (y * 512 + 300)] != 128);
 	stage_finish(&rest);
 	stage_finish(&stage);
 }
