@@ -232,16 +232,29 @@ static int read_aln(struct reading *reading, char *text)
 
 /* ---- registrations: a line for each scan */
 
-/* Of a line with "mesh", for Stanford's own tools, the scan may be missing. */
-static bool is_there(const struct reading *reading, const char *name)
+/* Of a line with "mesh", for Stanford's own tools, the scan may be missing. Returns 1 if it is
+ * there, 0 if not, or a negative errno with a diagnostic: no scan may be called so. */
+static int is_there(const struct reading *reading, const char *name)
 {
 	struct stat status;
 	char *path = NULL;
-	const bool found =
-		join_path(reading, reading->line, name, &path) == 0 && stat(path, &status) == 0;
+	const int rc = join_path(reading, reading->line, name, &path);
+	const bool found = rc == 0 && stat(path, &status) == 0;
 
 	free(path);
-	return found;
+	return rc == 0 ? found : rc;
+}
+
+/* Adds the scan of a line. */
+static int add_conf_scan(struct reading *reading, const struct alignment_conf_line *parsed)
+{
+	const int found = parsed->is_optional ? is_there(reading, parsed->name) : 1;
+
+	if (found == 0)
+		return diagnostics_add(&reading->alignment->left_out, 0, reading->path,
+				       reading->line, "%.*s is not there and is left out",
+				       SHOWN_BYTES, parsed->name);
+	return found < 0 ? found : add_scan(reading, reading->line, parsed->name, parsed->matrix);
 }
 
 static int read_conf(struct reading *reading, char *text)
@@ -259,13 +272,7 @@ static int read_conf(struct reading *reading, char *text)
 					       "expected: bmesh NAME, three numbers that move it "
 					       "and a quaternion x y z w, not '%.*s'",
 					       SHOWN_BYTES, line);
-		if (rc > 0 && parsed.is_optional && !is_there(reading, parsed.name))
-			diagnostics_add(&reading->alignment->left_out, 0, reading->path,
-					reading->line, "%.*s is not there and is left out",
-					SHOWN_BYTES, parsed.name);
-		else if (rc > 0)
-			rc = add_scan(reading, reading->line, parsed.name, parsed.matrix);
-		rc = rc < 0 ? rc : 0;
+		rc = rc > 0 ? add_conf_scan(reading, &parsed) : 0;
 	}
 	if (rc == 0 && reading->alignment->count == 0)
 		rc = diagnostics_add(reading->diagnostics, -EBADMSG, reading->path, 0,

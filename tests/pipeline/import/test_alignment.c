@@ -134,6 +134,8 @@ static void refuses_with_line_and_cure(void **state)
 		{ "number.conf", "bmesh a.ply 0 0 0 0 0 1\n", ":1: expected: bmesh NAME" },
 		{ "turn.conf", "\nbmesh a.ply 0 0 0 0 0 0 0\n", ":2: expected: bmesh NAME" },
 		{ "none.conf", "camera 0 0 0\n", "places no scan" },
+		{ "outside.conf", "bmesh a.ply 0 0 0 0 0 0 1\nmesh ../b.ply 0 0 0 0 0 0 1\n",
+		  ":2: scan ../b.ply lies outside" },
 		{ "gone.conf", "bmesh gone.ply 0 0 0 0 0 0 1\n", ":1: scan " },
 		{ "far.conf", "bmesh a.ply 1e300 0 0 0 0 0 1\n", "beyond 1e12" },
 		{ "e.aln", "", "must begin with the number of its scans" },
