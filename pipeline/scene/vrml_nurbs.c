@@ -11,7 +11,9 @@
 #include "pipeline/scene/vrml_graph.h"
 #include "pipeline/scene/vrml_trim.h"
 
-enum { SPAN_STEPS = 16, INNER_MAX = 8, SPANS_MAX = 64 };
+/* DEPTH_MAX: an edge is halved at most 16 times until it is too short (64 spans, each in 1024), a
+ * triangle has three, and INNER_MAX are added in its middle. */
+enum { SPAN_STEPS = 16, INNER_MAX = 8, SPANS_MAX = 64, DEPTH_MAX = 3 * 16 + INNER_MAX };
 
 /* How far a surface may be from an edge, as a share of its length. */
 #define ERROR_OF_LENGTH 0.02
@@ -26,6 +28,7 @@ struct filling {
 	double low[2], high[2];
 	double shortest; /* length of an edge that is not divided */
 	double span[2];  /* the shortest one between knots, or a 64th of the range */
+	int depth;       /* of the triangle that is divided, in those that it is a part of */
 };
 
 struct corner {
@@ -197,11 +200,11 @@ static int add_triangle(const struct filling *f, const struct corner *const corn
 	return soup_add(f->soup, out, 3);
 }
 
-static int divide(const struct filling *f, const struct corner *a, const struct corner *b,
+static int divide(struct filling *f, const struct corner *a, const struct corner *b,
 		  const struct corner *c, int inner);
 
 /* No edge bends; does the middle? Then its corners are joined with the middle. */
-static int divide_middle(const struct filling *f, const struct corner *const v[3], int inner)
+static int divide_middle(struct filling *f, const struct corner *const v[3], int inner)
 {
 	struct corner middle;
 	double flat[3], longest = 0;
@@ -221,8 +224,8 @@ static int divide_middle(const struct filling *f, const struct corner *const v[3
 	return rc;
 }
 
-static int divide(const struct filling *f, const struct corner *a, const struct corner *b,
-		  const struct corner *c, int inner)
+static int divide_edges(struct filling *f, const struct corner *a, const struct corner *b,
+			const struct corner *c, int inner)
 {
 	const struct corner *v[3] = { a, b, c };
 	struct corner m[3];
@@ -264,9 +267,74 @@ static int divide(const struct filling *f, const struct corner *a, const struct 
 	return rc == 0 ? divide(f, a, &m[(first + 1) % 3], c, inner) : rc;
 }
 
+/* ---- corners in one line of the parameters */
+
+struct outline {
+	struct corner *corners; /* owned */
+	uint32_t count, room;
+};
+
+/* Adds the first corner of an edge, and those between that its neighbours divide it at. */
+static int add_edge(struct outline *out, const struct filling *f, const struct corner *a,
+		    const struct corner *b)
+{
+	struct corner middle;
+	int rc;
+
+	if (edge_bends(f, a, b)) {
+		set_corner(f, &middle, (a->at[0] + b->at[0]) / 2, (a->at[1] + b->at[1]) / 2);
+		rc = add_edge(out, f, a, &middle);
+		return rc == 0 ? add_edge(out, f, &middle, b) : rc;
+	}
+	rc = ARRAY_RESERVE(out->corners, out->room, out->count + 1, SOUP_TRIANGLES_MAX);
+	if (rc == 0)
+		out->corners[out->count++] = *a;
+	return rc;
+}
+
+/* Adds a triangle whose edges are divided, as a fan. */
+static int add_outline(const struct filling *f, const struct corner *const v[3])
+{
+	struct outline outline = { 0 };
+	int rc = 0;
+
+	for (int k = 0; k < 3 && rc == 0; k++)
+		rc = add_edge(&outline, f, v[k], v[(k + 1) % 3]);
+	for (uint32_t i = 2; i < outline.count && rc == 0; i++)
+		rc = add_triangle(f, (const struct corner *[]){ &outline.corners[0],
+								&outline.corners[i - 1],
+								&outline.corners[i] });
+	free(outline.corners);
+	return rc;
+}
+
+/* Whether a triangle has no area in the parameters that could become smaller: to divide it might
+ * never end, as an edge can seem straight whose parts do not. */
+static bool is_line(const struct filling *f, const struct corner *const v[3])
+{
+	const double area = (v[1]->at[0] - v[0]->at[0]) * (v[2]->at[1] - v[0]->at[1]) -
+			    (v[1]->at[1] - v[0]->at[1]) * (v[2]->at[0] - v[0]->at[0]);
+
+	return !(fabs(area) > 1e-9 * f->span[0] * f->span[1]);
+}
+
+static int divide(struct filling *f, const struct corner *a, const struct corner *b,
+		  const struct corner *c, int inner)
+{
+	const struct corner *const corners[3] = { a, b, c };
+	int rc;
+
+	if (f->depth == DEPTH_MAX || is_line(f, corners))
+		return add_outline(f, corners);
+	f->depth++;
+	rc = divide_edges(f, a, b, c, inner);
+	f->depth--;
+	return rc;
+}
+
 static int fill_triangle(void *data, const double a[2], const double b[2], const double c[2])
 {
-	const struct filling *f = data;
+	struct filling *f = data;
 	struct corner corners[3];
 
 	set_corner(f, &corners[0], a[0], a[1]);

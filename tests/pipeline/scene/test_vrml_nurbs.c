@@ -256,6 +256,25 @@ static void curves_are_where_they_should_be(void **state)
 	vrml_surface_finish(&surface);
 }
 
+/* Its edges seem straight where the parts of one bend: corners in one line of the parameters were
+ * divided for ever. */
+static void a_surface_with_kinks_has_an_end(void **state)
+{
+	struct vrml_surface surface;
+
+	(void)state;
+	surface = made(
+		HEAD
+		"Shape { geometry NurbsSurface { uDimension 4 vDimension 3\n"
+		"uOrder 2 vOrder 2 uKnot [ 0 0 .3 .6 1 1 ] vKnot [ 0 0 .5 1 1 ] controlPoint [\n"
+		"0 0 0, 1 0 0, 2 0 2, 3 0 0, 0 0 1, 1 2 1, 2 0 1, 3 0 1,\n"
+		"0 0 2, 1 0 2, 2 0 2, 3 0 2 ] } }\n");
+	CHECK(surface.soup.count < 10000);
+	/* no more than its border, but for an edge that several slivers share */
+	CHECK(fabs(open_length(&surface.soup) - (1 + 2 * sqrt(5) + 3 + 2 * 2)) < 0.3);
+	vrml_surface_finish(&surface);
+}
+
 static void faults_are_refused_with_the_line(void **state)
 {
 #define PLANE "uDimension 2 vDimension 2 controlPoint [ 0 0 0, 1 0 0, 0 1 0, 1 1 0 ] "
@@ -306,6 +325,7 @@ int main(void)
 		cmocka_unit_test(neighbours_meet_without_a_crack),
 		cmocka_unit_test(trimming_leaves_the_rest),
 		cmocka_unit_test(curves_are_where_they_should_be),
+		cmocka_unit_test(a_surface_with_kinks_has_an_end),
 		cmocka_unit_test(faults_are_refused_with_the_line),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
