@@ -1,18 +1,27 @@
 /* A VRML97 scene, gzip'd or not, which may name itself as the file of an Inline or a prototype: it
  * is refused with its name, or becomes triangles whose numbers are finite or far, and whose
- * textures are there; or scenery; or views, whose times ascend. */
+ * textures are there; or scenery; or views, whose times ascend. Beside it are a grey picture, a
+ * coloured one and one that is damaged, and a wooden look is known for "Wood". */
 #include <errno.h>
 
 #include "pipeline/scene/vrml_scenery.h"
 #include "pipeline/scene/vrml_surface.h"
 #include "pipeline/scene/vrml_views.h"
 #include "tests/fuzz/scratch.h"
+#include "tests/fuzz/small_png.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 static int open_beside(void *data, const char *name)
 {
-	return strcmp(name, "other.wrl") == 0 ? open(data, O_RDONLY | O_CLOEXEC) : -ENOENT;
+	static const char *const names[] = { "other.wrl", "grey.png", "coloured.png",
+					     "damaged.png" };
+
+	(void)data;
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (strcmp(name, names[i]) == 0)
+			return open(scratch_path(name), O_RDONLY | O_CLOEXEC);
+	return -ENOENT;
 }
 
 static void check(const struct vrml_surface *surface)
@@ -31,7 +40,10 @@ static int make_scenery(const struct vrml *scene, const struct vrml_options *opt
 	const struct scenery_node root = { .parent = SCENERY_NONE,
 					   .layer = SCENERY_NONE,
 					   .place = scenery_at_rest };
-	struct scenery_maker maker = { 0 };
+	struct scenery_look wood = { .name = "Wood",
+				     .substance = SUBSTANCE_WOOD,
+				     .relief_m = 0.01f };
+	struct scenery_maker maker = { .looks = &wood, .look_count = 1 };
 	struct scenery made = { 0 };
 	uint32_t node = 0;
 	int rc = scenery_add_node(&maker, &root, &node);
@@ -45,17 +57,29 @@ static int make_scenery(const struct vrml *scene, const struct vrml_options *opt
 	return rc;
 }
 
-static void read_views(const struct vrml *scene, struct diagnostics *diagnostics)
+/* description: of the view that is wanted; NULL: the only one. */
+static void read_views(const struct vrml *scene, const char *description)
 {
+	struct diagnostics diagnostics = { 0 };
 	struct scene_views views;
-	int rc = vrml_views_read(&views, scene, NULL, diagnostics);
+	int rc = vrml_views_read(&views, scene, description, &diagnostics);
 
-	if (rc < 0 && diagnostics->error_count == 0)
+	if (rc < 0 && diagnostics.error_count == 0)
 		abort();
 	for (uint32_t i = 1; i < views.count; i++)
 		if (views.items[i].time_s < views.items[i - 1].time_s)
 			abort();
 	scene_views_finish(&views);
+}
+
+static void begin(void)
+{
+	if (scratch[0])
+		return;
+	scratch_begin();
+	scratch_write("grey.png", small_png, sizeof(small_png));
+	scratch_write("coloured.png", coloured_png, sizeof(coloured_png));
+	scratch_write("damaged.png", small_png, sizeof(small_png) - 20);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -66,15 +90,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	struct vrml *scene;
 	int rc;
 
-	scratch_begin();
+	begin();
 	scratch_write("other.wrl", data, size);
-	options.data = (void *)scratch_path("other.wrl");
 	rc = vrml_read(&scene, (struct bytes){ data, size }, "a.wrl", &options, &diagnostics,
 		       &warnings);
 	if (rc == 0) {
-		struct diagnostics of_views = { 0 };
-
-		read_views(scene, &of_views);
+		read_views(scene, NULL);
+		read_views(scene, "w");
 		rc = vrml_surface_make(&surface, scene, &diagnostics);
 		if (rc == 0) {
 			check(&surface);
