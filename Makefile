@@ -19,8 +19,8 @@ FOLDERS := base geometry format tuf board system render ui input sound storage n
 LIBS    := egl glesv2 gbm libdrm libevdev sqlite3 libjpeg libpng libwebp libcurl libzstd libsodium \
            pangocairo glib-2.0 libxml-2.0 libcjson sdl2 assimp libsystemd libmicrohttpd \
            libwebsockets libgit2 opusfile ogg alsa libcrypto zlib
-# METIS and jsmn (only a header) have no pkg-config file in Debian 12.
-EXTRA   := -lmetis -lm -pthread
+# METIS, meshoptimizer and jsmn (only a header) have no pkg-config file in Debian 12.
+EXTRA   := -lmetis -lmeshoptimizer -lm -pthread
 
 # Evaluated lazily and once, because the `deps` target may install the packages first.
 PKG_CFLAGS = $(eval PKG_CFLAGS := $(shell pkg-config --cflags $(LIBS)))$(PKG_CFLAGS)
@@ -265,7 +265,7 @@ $(BUILD)/obj/curator/web/%.gz: curator/web/%
 $(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz/fuzz_%.o $(FUZZ_MAIN) $(ARCHIVE)
 	@mkdir -p $(@D)
 	$(LINK)
-$(BUILD)/tests/bench/%: EXTRA += -lmeshoptimizer -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
+$(BUILD)/tests/bench/%: EXTRA += -Wl,--wrap=clock_now_us,--wrap=clock_now_ms
 $(BUILD)/tests/bench/bench_materials: EXTRA += -lcmocka
 $(BUILD)/tests/bench/bench_page: EXTRA += $(addprefix -Wl$(comma)--wrap=,frame_draw fingers_on_touch overlay_update)
 $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BENCH_PARTS) $(ARCHIVE) | $(CATALOGUES)

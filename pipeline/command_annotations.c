@@ -28,6 +28,8 @@ static const char help[] =
 	"                    (docs/iiif.md)\n"
 	"  --base ADDRESS    where the manifest and the scans will be published (default:\n"
 	"                    https://example.org/iiif/)\n"
+	"  --model FILE.glb  with --iiif: show this file beside the manifest, which gopura-content export\n"
+	"                    makes, in place of the scans\n"
 	"\n"
 	"import writes parts.json, pages/ and pictures/ into CONTENT, which must not have parts yet. FILE\n"
 	"may be a IIIF manifest of 3D scenes, whose comments become parts (docs/iiif.md).\n"
@@ -120,12 +122,13 @@ static int write_export(const struct annotations *annotations, const char *conte
 }
 
 static int run_export(const char *content, const char *out, char *language_list,
-		      const char *manifest_base)
+		      const char *manifest_base, const char *model)
 {
 	const char *languages[INFO_LANGUAGES_MAX];
 	struct diagnostics found = { .max = INFO_DIAGNOSTICS_MAX };
 	struct annotations_export_options options = { .folder = content,
 						      .manifest_base = manifest_base,
+						      .manifest_model = model,
 						      .diagnostics = &found };
 	struct annotations annotations;
 	int rc;
@@ -183,6 +186,7 @@ int command_annotations(int argc, char **argv)
 		{ "language", required_argument, NULL, 'l' },
 		{ "iiif", no_argument, NULL, 'm' },
 		{ "base", required_argument, NULL, 'b' },
+		{ "model", required_argument, NULL, 'M' },
 		{ "up", required_argument, NULL, 'u' },
 		{ "skip-unknown", no_argument, NULL, 's' },
 		{ "help", no_argument, NULL, 'h' },
@@ -191,6 +195,7 @@ int command_annotations(int argc, char **argv)
 	struct annotations_import_options import = { 0 };
 	const char *out = NULL;
 	const char *base = "https://example.org/iiif/";
+	const char *model = NULL;
 	bool is_manifest = false;
 	char *languages = NULL;
 	int option;
@@ -220,6 +225,9 @@ int command_annotations(int argc, char **argv)
 		case 'b':
 			base = optarg;
 			break;
+		case 'M':
+			model = optarg;
+			break;
 		case 's':
 			import.skip_unknown = true;
 			break;
@@ -233,8 +241,11 @@ int command_annotations(int argc, char **argv)
 	if (argc - optind != 2)
 		return command_wrong(argv[0], "give export CONTENT or import FILE", "");
 	import.file = argv[optind + 1];
+	if (model && !is_manifest)
+		return command_wrong(argv[0], "--model is for --iiif", "");
 	if (strcmp(argv[optind], "export") == 0)
-		return run_export(argv[optind + 1], out, languages, is_manifest ? base : NULL);
+		return run_export(argv[optind + 1], out, languages, is_manifest ? base : NULL,
+				  model);
 	if (strcmp(argv[optind], "import") == 0)
 		return run_import(&import);
 	return command_wrong(argv[0], "export or import, not ", argv[optind]);

@@ -24,6 +24,8 @@ int command_build(int argc, char **argv);
 int command_deform(int argc, char **argv);
 /* delegate: lets teams publish in one release folder, each by keys of its own. */
 int command_delegate(int argc, char **argv);
+/* export: makes one model of the scans. */
+int command_export(int argc, char **argv);
 /* hierarchy: makes the multiresolution hierarchy. */
 int command_hierarchy(int argc, char **argv);
 /* import: reads scans and reports what was repaired. */

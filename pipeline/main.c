@@ -16,6 +16,7 @@ static const struct command commands[] = {
 	  command_publish },
 	{ "verify", "check everything in a release", command_verify },
 	{ "inspect", "show what an object, a file or a release contains", command_inspect },
+	{ "export", "make one model of the scans, for web pages and viewers", command_export },
 	{ "annotations", "export parts and pages as W3C Web Annotations, or import them",
 	  command_annotations },
 	{ "keys", "make or exchange the signing keys of a content folder", command_keys },

@@ -324,17 +324,17 @@ static int list_pictures(struct annotations *out, const struct draft *draft)
 	return 0;
 }
 
-/* manifest_base as in the options. */
 static int write_json(struct annotations *out, struct draft *draft, const cJSON *json,
-		      const cJSON *tours, const char *manifest_base)
+		      const cJSON *tours, const struct annotations_export_options *options)
 {
 	struct exporter exporter = { .draft = draft };
 	cJSON *made = NULL;
 	char *text;
 	int rc = 0;
 
-	if (manifest_base)
-		rc = annotations_iiif_make(&made, draft, json, manifest_base);
+	if (options->manifest_base)
+		rc = annotations_iiif_make(&made, draft, json, options->manifest_base,
+					   options->manifest_model);
 	else
 		made = make_collection(&exporter, json, tours);
 	text = made ? cJSON_Print(made) : NULL;
@@ -409,7 +409,7 @@ int annotations_export(struct annotations *out, const struct annotations_export_
 		rc = -EINVAL;
 	if (rc == 0)
 		rc = write_json(out, &draft, json, cJSON_GetObjectItemCaseSensitive(tours, "tours"),
-				options->manifest_base);
+				options);
 	if (rc == 0 && draft.diagnostics->error_count > errors)
 		rc = -EINVAL;
 	if (rc == 0)

@@ -14,6 +14,9 @@ struct annotations_export_options {
 	/* NULL: an annotation collection. Otherwise a IIIF manifest of the scans and the parts, and
 	 * the address where it will be published */
 	const char *manifest_base;
+	/* of a manifest: the file beside it that is shown in place of the scans, as gopura-content
+	 * export makes it; NULL: the scans */
+	const char *manifest_model;
 	struct diagnostics *diagnostics; /* gets every fault and every warning; borrowed */
 };
 

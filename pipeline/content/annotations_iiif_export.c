@@ -15,8 +15,9 @@
 struct maker {
 	const struct draft *draft;
 	const struct content *content;
-	const char *base; /* ends with a slash */
-	bool failed;      /* out of memory */
+	const char *base;  /* ends with a slash */
+	const char *model; /* NULL: the scans */
+	bool failed;       /* out of memory */
 };
 
 static void add(struct maker *m, cJSON *object, const char *key, cJSON *value)
@@ -240,6 +241,15 @@ static void add_scan(struct maker *m, cJSON *items, uint32_t scan)
 	add_target(m, annotation, differs(parts.position, 0) ? parts.position : NULL);
 }
 
+/* The model stands where the scans do: it is in metres, and y is up. */
+static void add_one_model(struct maker *m, cJSON *items)
+{
+	cJSON *annotation = add_annotation(m, items, "models/", "1", "painting");
+
+	add_model(m, annotation, "body", m->model);
+	add_target(m, annotation, NULL);
+}
+
 /* ---- parts */
 
 static const cJSON *member(const cJSON *object, const char *key)
@@ -380,7 +390,9 @@ static void fill(struct maker *m, cJSON *manifest, const cJSON *json)
 	scene = add_thing(m, add_array(m, manifest, "items"), NULL, "Scene", "", "scene");
 	add_label(m, scene);
 	items = add_page(m, scene, "items", "models");
-	for (uint32_t scan = 0; scan < m->content->scan_count && !m->failed; scan++)
+	if (m->model)
+		add_one_model(m, items);
+	for (uint32_t scan = 0; !m->model && scan < m->content->scan_count && !m->failed; scan++)
 		add_scan(m, items, scan);
 	items = add_page(m, scene, "annotations", "comments");
 	cJSON_ArrayForEach(part, member(json, "parts")) if (!m->failed)
@@ -395,9 +407,9 @@ static void fill(struct maker *m, cJSON *manifest, const cJSON *json)
 }
 
 int annotations_iiif_make(cJSON **out, const struct draft *draft, const cJSON *json,
-			  const char *base)
+			  const char *base, const char *model)
 {
-	struct maker m = { .draft = draft };
+	struct maker m = { .draft = draft, .model = model };
 	struct content *content = malloc(sizeof(*content));
 	int rc = content ? content_read(content, draft->options->folder, draft->diagnostics)
 			 : -ENOMEM;

@@ -30,6 +30,7 @@ struct coefficients {
 	uint32_t width_px, height_px;
 	uint32_t unit_columns, unit_rows;
 	uint32_t fragment_units; /* a side of a fragment */
+	uint8_t best;            /* quality, whose steps they are in */
 	uint32_t columns, rows;  /* fragments */
 	bool *used;              /* owned; for each fragment */
 	struct coefficient_plane planes[COEFFICIENT_PLANES];

@@ -111,7 +111,7 @@ static void writer_begin(struct writer *writer, const struct coefficients *coeff
 	codec->input_components = COEFFICIENT_PLANES;
 	codec->in_color_space = JCS_RGB;
 	jpeg_set_defaults(codec);
-	jpeg_set_quality(codec, FRAGMENT_JPEG_QUALITY_MOST, TRUE);
+	jpeg_set_quality(codec, coefficients->best, TRUE);
 }
 
 static void writer_init(struct writer *writer, struct buffer *out)
@@ -130,19 +130,20 @@ static void take_factors(struct coefficients *coefficients, j_compress_ptr codec
 {
 	uint32_t best[2][COEFFICIENTS_OF_BLOCK];
 
-	for (int quality = FRAGMENT_JPEG_QUALITY_MOST; quality > 0; quality--) {
+	memset(coefficients->factors, 1, sizeof(coefficients->factors));
+	for (int quality = coefficients->best; quality > 0; quality--) {
 		jpeg_set_quality(codec, quality, TRUE);
 		for (int table = 0; table < 2; table++)
 			for (int k = 0; k < COEFFICIENTS_OF_BLOCK; k++) {
 				uint32_t step = codec->quant_tbl_ptrs[table]->quantval[k];
 
-				if (quality == FRAGMENT_JPEG_QUALITY_MOST)
+				if (quality == coefficients->best)
 					best[table][k] = step;
 				coefficients->factors[quality][table][k] =
 					(uint8_t)((step + best[table][k] / 2) / best[table][k]);
 			}
 	}
-	jpeg_set_quality(codec, FRAGMENT_JPEG_QUALITY_MOST, TRUE);
+	jpeg_set_quality(codec, coefficients->best, TRUE);
 }
 
 static int compress(struct writer *writer, struct coefficients *coefficients, const uint8_t *rgb)
@@ -232,7 +233,7 @@ static void drop_unused(struct coefficients *coefficients)
 }
 
 int fragment_jpeg_create(struct fragment_jpeg **out, const uint8_t *rgb, uint32_t width_px,
-			 uint32_t height_px, uint32_t fragment_px, const bool *used)
+			 uint32_t height_px, uint32_t fragment_px, const bool *used, uint8_t best)
 {
 	struct fragment_jpeg *jpeg;
 	int rc;
@@ -240,13 +241,15 @@ int fragment_jpeg_create(struct fragment_jpeg **out, const uint8_t *rgb, uint32_
 	*out = NULL;
 	if (width_px == 0 || height_px == 0 || width_px > FRAGMENT_JPEG_SIDE_MOST_PX ||
 	    height_px > FRAGMENT_JPEG_SIDE_MOST_PX || fragment_px == 0 ||
-	    fragment_px % FRAGMENT_JPEG_UNIT_PX != 0)
+	    fragment_px % FRAGMENT_JPEG_UNIT_PX != 0 || best == 0 ||
+	    best > FRAGMENT_JPEG_QUALITY_MOST)
 		return -EINVAL;
 	jpeg = calloc(1, sizeof(*jpeg));
 	if (!jpeg)
 		return -ENOMEM;
 	rc = coefficients_init(&jpeg->coefficients, width_px, height_px,
 			       fragment_px / FRAGMENT_JPEG_UNIT_PX, used);
+	jpeg->coefficients.best = best;
 	if (rc == 0)
 		rc = read_picture(&jpeg->coefficients, rgb);
 	if (rc == 0) {

@@ -41,6 +41,7 @@ may_enter() {
 	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import octree" ;;
 	pipeline/octree | pipeline/deform) answer="import" ;;
+	pipeline/texmesh) answer="import samples" ;;
 	pipeline/hierarchy) answer="import material" ;;
 	pipeline/samples) answer="import content material hierarchy" ;;
 	pipeline/release) answer="keys import content hierarchy samples" ;;
@@ -67,11 +68,12 @@ is_public() {
 	pipeline/scene/*) names="vrml vrml_text vrml_surface vrml_scenery vrml_views scene_views gltf_views gltf gltf_scenery scenery_maker soup" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import start_view work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
-	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait" ;;
+	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait scale_space tile_quality" ;;
 	pipeline/release/*) names="delegation publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;
 	pipeline/deform/*) names="deform deform_plan mesh_obj" ;;
+	pipeline/texmesh/*) names="texmesh" ;;
 	pipeline/keys/*) names="exchange_folder keys keys_exchange keys_place keys_team keys_tuf signing" ;;
 	pipeline/material/*) names="material" ;;
 	pipeline/temple/*) names="temple" ;;

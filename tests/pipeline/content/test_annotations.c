@@ -402,14 +402,20 @@ static void takes_the_comments_of_a_manifest(void **state)
 	CHECK(diagnostics_get(&told, 3)->line == 8);
 }
 
-static int export_manifest(struct annotations *out)
+static int export_manifest_with(struct annotations *out, const char *model)
 {
 	const struct annotations_export_options options = { .folder = folder,
 							    .manifest_base = "https://x.org/t",
+							    .manifest_model = model,
 							    .diagnostics = &told };
 
 	diagnostics_finish(&told);
 	return annotations_export(out, &options);
+}
+
+static int export_manifest(struct annotations *out)
+{
+	return export_manifest_with(out, NULL);
 }
 
 /* The parts come back byte for byte, and the scan lies where it lay. */
@@ -453,6 +459,37 @@ static void writes_a_manifest_that_comes_back(void **state)
 	alignment_finish(&alignment);
 	annotations_finish(&first);
 	annotations_finish(&second);
+	annotations_finish(&manifest);
+}
+
+/* It stands in metres with y up, whatever the scans' unit and axes. */
+static void shows_one_model_in_place_of_the_scans(void **state)
+{
+	const double from[3] = { 1, 2, 3 };
+	struct annotations manifest;
+	struct alignment alignment;
+	double to[3];
+	char path[200];
+
+	(void)state;
+	write_text("temple.ini", "[model]\nscans = a.ply, b.ply\nunit = 0.01\n");
+	write_text("a.ply", "ply\n");
+	write_text("b.ply", "ply\n");
+	write_text("temple.glb", "glTF");
+	write_text("parts.json",
+		   "{\"parts\": [{\"id\": \"bud\", \"anchor\": [4, 0, 0], \"page\": false,\n"
+		   "\"title\": {\"en\": \"Bud\"}}]}\n");
+	CHECK(export_manifest_with(&manifest, "temple.glb") == 0);
+	write_file("exchange.json", manifest.json.data, manifest.json.size);
+	CHECK(strstr((char *)manifest.json.data, "\"https://x.org/t/temple.glb\""));
+	CHECK(strstr((char *)manifest.json.data, "model/gltf-binary"));
+	CHECK(!strstr((char *)manifest.json.data, ".ply"));
+	snprintf(path, sizeof(path), "%s/exchange.json", folder);
+	CHECK(alignment_read(&alignment, path, &told) == 0);
+	CHECK(alignment.count == 1);
+	transform_point(&alignment.scans[0].transform, from, to);
+	CHECK(memcmp(from, to, sizeof(to)) == 0);
+	alignment_finish(&alignment);
 	annotations_finish(&manifest);
 }
 
@@ -650,6 +687,7 @@ int main(void)
 		IN_A_FOLDER(takes_the_comments_of_a_manifest),
 		IN_A_FOLDER(refuses_a_manifest_without_comments),
 		IN_A_FOLDER(writes_a_manifest_that_comes_back),
+		IN_A_FOLDER(shows_one_model_in_place_of_the_scans),
 		IN_A_FOLDER(writes_the_places_of_scans),
 		IN_A_FOLDER(names_what_a_manifest_cannot_say),
 		IN_A_FOLDER(leaves_unknown_selectors_out_where_told_to),

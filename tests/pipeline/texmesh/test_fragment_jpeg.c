@@ -62,7 +62,8 @@ static struct stage stage_make(uint32_t width, uint32_t height, const bool *used
 {
 	struct stage stage = { .rgb = make_rgb(width, height), .width = width, .height = height };
 
-	CHECK(fragment_jpeg_create(&stage.jpeg, stage.rgb, width, height, FRAGMENT_PX, used) == 0);
+	CHECK(fragment_jpeg_create(&stage.jpeg, stage.rgb, width, height, FRAGMENT_PX, used,
+				   FRAGMENT_JPEG_QUALITY_MOST) == 0);
 	stage.count = fragment_jpeg_count(stage.jpeg);
 	stage.qualities = malloc(stage.count);
 	memset(stage.qualities, BEST, stage.count);
@@ -249,7 +250,8 @@ static void takes_the_hardest_contrasts(void **state)
 			memset(rgb + 3 * i,
 			       ((i % SIDE >> shift ^ (stripes ? 0 : i / SIDE >> shift)) & 1) * 255,
 			       3);
-		CHECK(fragment_jpeg_create(&jpeg, rgb, SIDE, SIDE, 16, NULL) == 0);
+		CHECK(fragment_jpeg_create(&jpeg, rgb, SIDE, SIDE, 16, NULL,
+					   FRAGMENT_JPEG_QUALITY_MOST) == 0);
 		for (uint8_t quality = 1; quality <= BEST; quality++) {
 			uint8_t qualities[9];
 
@@ -412,11 +414,11 @@ static void refuses_sizes_that_it_cannot_take(void **state)
 	(void)state;
 	for (size_t i = 0; i < ARRAY_COUNT(bad); i++) {
 		jpeg = (struct fragment_jpeg *)&rgb;
-		CHECK(fragment_jpeg_create(&jpeg, rgb, bad[i][0], bad[i][1], bad[i][2], NULL) ==
+		CHECK(fragment_jpeg_create(&jpeg, rgb, bad[i][0], bad[i][1], bad[i][2], NULL, 95) ==
 		      -EINVAL);
 		CHECK(jpeg == NULL);
 	}
-	CHECK(fragment_jpeg_create(&jpeg, rgb, 1, 1, UINT32_MAX - 15, NULL) == 0);
+	CHECK(fragment_jpeg_create(&jpeg, rgb, 1, 1, UINT32_MAX - 15, NULL, 95) == 0);
 	CHECK(fragment_jpeg_count(jpeg) == 1);
 	fragment_jpeg_destroy(jpeg);
 	fragment_jpeg_destroy(NULL);
