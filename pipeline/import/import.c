@@ -15,7 +15,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/spill.h"
-#include "pipeline/import/gltf_extensions.h"
+#include "pipeline/import/gltf_check.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_foreign.h"
 #include "pipeline/import/import_limits.h"
@@ -352,8 +352,7 @@ bool import_unit_named(const char *name, double *out_metres)
 enum { GLTF_LOOK_BYTES = 64 << 20 }; /* the JSON of a GLB comes first and is far smaller */
 
 /* Refuses a glTF file that cannot be read right, before anything is read of it. */
-static int look_for_extensions(const char *path, uint64_t file_bytes,
-			       struct diagnostics *diagnostics)
+static int check_gltf(const char *path, uint64_t file_bytes, struct diagnostics *diagnostics)
 {
 	size_t size = file_bytes < GLTF_LOOK_BYTES ? (size_t)file_bytes : GLTF_LOOK_BYTES;
 	uint8_t *text = malloc(size + 1);
@@ -365,7 +364,9 @@ static int look_for_extensions(const char *path, uint64_t file_bytes,
 	if (rc < 0)
 		diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc));
 	else
-		rc = gltf_extensions_check((struct bytes){ text, size }, path, diagnostics);
+		rc = gltf_check_extensions((struct bytes){ text, size }, path, diagnostics);
+	if (rc == 0)
+		rc = gltf_check_coordinates((struct bytes){ text, size }, path, diagnostics);
 	free(text);
 	return rc;
 }
@@ -377,7 +378,7 @@ static int check_format(const char *path, enum scan_format format, uint64_t file
 	if (format == SCAN_PLY)
 		return import_ply_check(path, diagnostics);
 	if (format == SCAN_GLTF || format == SCAN_GLB)
-		return look_for_extensions(path, file_bytes, diagnostics);
+		return check_gltf(path, file_bytes, diagnostics);
 	return 0;
 }
 

@@ -9,7 +9,7 @@
 
 #include "geometry/turn.h"
 #include "geometry/vec.h"
-#include "pipeline/import/gltf_extensions.h"
+#include "pipeline/import/gltf_check.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/scene/gltf_scenery.h"
 #include "pipeline/scene/gltf_views.h"
@@ -114,7 +114,7 @@ static int add_vrml(struct scenery_maker *maker, struct scene_file *file, uint32
 static int read_gltf(struct gltf *out, struct scene_file *file, struct diagnostics *diagnostics)
 {
 	const struct gltf_options options = { .open_file = open_file, .data = &file->files };
-	int rc = gltf_extensions_check(buffer_bytes(&file->bytes), file->path, diagnostics);
+	int rc = gltf_check_extensions(buffer_bytes(&file->bytes), file->path, diagnostics);
 
 	return rc < 0 ? rc
 		      : gltf_read(out, buffer_bytes(&file->bytes), file->path, &options,

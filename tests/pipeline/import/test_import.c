@@ -528,6 +528,14 @@ static void refuses_what_is_no_surface(void **state)
 		  "{ \"extensionsRequired\" : [ \"KHR_materials_unlit\", "
 		  "\"KHR_mesh_quantization\" ] }",
 		  "cli dequantize" },
+		{ "shorts.gltf",
+		  "{\"accessors\":[{\"componentType\":5126},{\"componentType\":5123}],\"meshes\":[{"
+		  "\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1}}]}]}",
+		  "texture coordinates are quantised, which is not read here; convert it" },
+		{ "strange.gltf",
+		  "{\"accessors\":{\"a\":[7]},\"meshes\":[{\"primitives\":[{\"attributes\":"
+		  "{\"TEXCOORD_0\":1e300}},{\"attributes\":[3]},4]},5]}",
+		  "glTF reader says" },
 		{ "webp.gltf", "{\"extensionsRequired\":[\"EXT_texture_webp\"]}",
 		  "png --formats webp" },
 		{ "new.gltf", "{\"extensionsRequired\":[\"ACME_of_tomorrow\"]}",

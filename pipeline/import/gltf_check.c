@@ -1,11 +1,14 @@
-/* Scans the text for the list: an extension's name has no escapes, and nothing is built from what
- * the file says but the message. */
-#include "pipeline/import/gltf_extensions.h"
+/* Extensions are looked for in the text: their names have no escapes, and nothing is built from
+ * what the file says but the message. */
+#include "pipeline/import/gltf_check.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { GLB_HEAD_BYTES = 20, NAME_BYTES = 64 };
+#include "pipeline/import/json.h"
+
+enum { GLB_HEAD_BYTES = 20, NAME_BYTES = 64, FLOAT = 5126 };
 
 /* Extensions that change neither places nor the base colour, and one that is read. */
 static const char *const harmless[] = { "KHR_materials_", "KHR_lights_punctual", "KHR_xmp",
@@ -94,7 +97,7 @@ static int judge(const char *name, const char *path, struct diagnostics *diagnos
 			       name);
 }
 
-int gltf_extensions_check(struct bytes file, const char *path, struct diagnostics *diagnostics)
+int gltf_check_extensions(struct bytes file, const char *path, struct diagnostics *diagnostics)
 {
 	struct bytes text = json_of(file);
 	char name[NAME_BYTES];
@@ -104,5 +107,72 @@ int gltf_extensions_check(struct bytes file, const char *path, struct diagnostic
 		return 0;
 	while (rc == 0 && next_name(&text, name))
 		rc = judge(name, path, diagnostics);
+	return rc;
+}
+
+/* ---- texture coordinates */
+
+/* Returns for each accessor whether its numbers are floats; NULL: no memory. */
+static bool *list_floats(const cJSON *accessors, int count)
+{
+	bool *floats = calloc((size_t)count + 1, sizeof(*floats));
+	const cJSON *accessor;
+	int i = 0;
+
+	cJSON_ArrayForEach(accessor, accessors)
+	{
+		const cJSON *type = json_member(accessor, "componentType");
+
+		if (floats && i < count)
+			floats[i++] = cJSON_IsNumber(type) && type->valuedouble == FLOAT;
+	}
+	return floats;
+}
+
+static bool names_integers(const cJSON *attributes, const bool *floats, int count)
+{
+	const cJSON *attribute;
+
+	cJSON_ArrayForEach(attribute, attributes)
+	{
+		if (strncmp(attribute->string ? attribute->string : "", "TEXCOORD_", 9) == 0 &&
+		    cJSON_IsNumber(attribute) && attribute->valuedouble >= 0 &&
+		    attribute->valuedouble < count && !floats[(int)attribute->valuedouble])
+			return true;
+	}
+	return false;
+}
+
+static bool has_integers(const cJSON *json, const bool *floats, int count)
+{
+	const cJSON *mesh, *primitive;
+
+	cJSON_ArrayForEach(mesh, json_member(json, "meshes"))
+	{
+		cJSON_ArrayForEach(primitive, json_member(mesh, "primitives"))
+		{
+			if (names_integers(json_member(primitive, "attributes"), floats, count))
+				return true;
+		}
+	}
+	return false;
+}
+
+int gltf_check_coordinates(struct bytes file, const char *path, struct diagnostics *diagnostics)
+{
+	const struct bytes text = json_of(file);
+	cJSON *json = cJSON_ParseWithLength((const char *)text.data, text.size);
+	const cJSON *accessors = json_member(json, "accessors");
+	const int count = cJSON_IsArray(accessors) ? cJSON_GetArraySize(accessors) : 0;
+	bool *floats = list_floats(accessors, count);
+	int rc = floats ? 0 : -ENOMEM;
+
+	if (rc == 0 && has_integers(json, floats, count))
+		rc = diagnostics_add(diagnostics, -ENOTSUP, path, 0,
+				     "its texture coordinates are quantised, which is not read "
+				     "here; convert it: npx @gltf-transform/cli dequantize IN.glb "
+				     "OUT.glb");
+	free(floats);
+	cJSON_Delete(json);
 	return rc;
 }
