@@ -11,6 +11,8 @@
 #include <jpeglib.h>
 #include <png.h>
 
+#include "format/jpeg_to_buffer.h"
+
 /* Allocates width x height pixels; -EBADMSG for an empty picture, -EFBIG past the limits. */
 static int allocate(struct picture *out, uint32_t width, uint32_t height, uint32_t side_most_px)
 {
@@ -131,12 +133,13 @@ static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_mos
 	struct jpeg_failure failure;
 	int rc;
 
+	memset(&codec, 0, sizeof(codec)); /* may be destroyed before it is made */
 	codec.err = jpeg_errors(&failure);
-	jpeg_create_decompress(&codec);
 	if (setjmp(failure.jump)) {
 		jpeg_destroy_decompress(&codec);
 		return -EBADMSG;
 	}
+	jpeg_create_decompress(&codec);
 	jpeg_mem_src(&codec, file.data, file.size);
 	jpeg_read_header(&codec, TRUE);
 	codec.out_color_space = JCS_EXT_RGBA;
@@ -161,19 +164,20 @@ static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_mos
 static int encode_jpeg(struct buffer *out, const struct picture *picture, int quality,
 		       bool halves_colour)
 {
+	const size_t size_before = out->size;
 	struct jpeg_compress_struct codec;
+	struct jpeg_to_buffer destination;
 	struct jpeg_failure failure;
-	unsigned char *encoded = NULL;
-	unsigned long encoded_bytes = 0;
 
+	memset(&codec, 0, sizeof(codec)); /* likewise */
 	codec.err = jpeg_errors(&failure);
-	jpeg_create_compress(&codec);
 	if (setjmp(failure.jump)) {
 		jpeg_destroy_compress(&codec);
-		free(encoded);
+		out->size = size_before;
 		return -ENOMEM;
 	}
-	jpeg_mem_dest(&codec, &encoded, &encoded_bytes);
+	jpeg_create_compress(&codec);
+	jpeg_to_buffer(&destination, &codec, out);
 	codec.image_width = picture->width;
 	codec.image_height = picture->height;
 	codec.input_components = 4;
@@ -191,8 +195,8 @@ static int encode_jpeg(struct buffer *out, const struct picture *picture, int qu
 	}
 	jpeg_finish_compress(&codec);
 	jpeg_destroy_compress(&codec);
-	buffer_put(out, encoded, encoded_bytes);
-	free(encoded);
+	if (out->error)
+		out->size = size_before;
 	return out->error;
 }
 

@@ -12,6 +12,7 @@
 #include <jpeglib.h>
 
 #include "base/log.h"
+#include "format/jpeg_to_buffer.h"
 #include "pipeline/texmesh/coefficient_bytes.h"
 
 _Static_assert((int)FRAGMENT_JPEG_QUALITY_MOST == (int)COEFFICIENT_QUALITY_MOST &&
@@ -34,9 +35,8 @@ struct errors {
 struct writer {
 	struct jpeg_compress_struct codec;
 	struct errors errors;
-	struct jpeg_destination_mgr destination;
+	struct jpeg_to_buffer destination;
 	struct buffer *out;
-	uint8_t chunk[1 << 14];
 };
 
 struct reading {
@@ -70,42 +70,13 @@ static struct jpeg_error_mgr *errors_init(struct errors *errors)
 	return &errors->manager;
 }
 
-static void start_chunk(j_compress_ptr codec)
-{
-	struct writer *writer = codec->client_data;
-
-	writer->destination.next_output_byte = writer->chunk;
-	writer->destination.free_in_buffer = sizeof(writer->chunk);
-}
-
-static boolean put_whole_chunk(j_compress_ptr codec)
-{
-	struct writer *writer = codec->client_data;
-
-	buffer_put(writer->out, writer->chunk, sizeof(writer->chunk));
-	start_chunk(codec);
-	return TRUE;
-}
-
-static void put_last_chunk(j_compress_ptr codec)
-{
-	struct writer *writer = codec->client_data;
-
-	buffer_put(writer->out, writer->chunk,
-		   sizeof(writer->chunk) - writer->destination.free_in_buffer);
-}
-
 /* Sets all that both files have in common: size, 4:2:0, the steps of the best quality. */
 static void writer_begin(struct writer *writer, const struct coefficients *coefficients)
 {
 	j_compress_ptr codec = &writer->codec;
 
 	jpeg_create_compress(codec);
-	codec->client_data = writer;
-	writer->destination.init_destination = start_chunk;
-	writer->destination.empty_output_buffer = put_whole_chunk;
-	writer->destination.term_destination = put_last_chunk;
-	codec->dest = &writer->destination;
+	jpeg_to_buffer(&writer->destination, codec, writer->out);
 	codec->image_width = coefficients->width_px;
 	codec->image_height = coefficients->height_px;
 	codec->input_components = COEFFICIENT_PLANES;
@@ -117,7 +88,6 @@ static void writer_begin(struct writer *writer, const struct coefficients *coeff
 static void writer_init(struct writer *writer, struct buffer *out)
 {
 	memset(&writer->codec, 0, sizeof(writer->codec)); /* may be destroyed before it is made */
-	memset(&writer->destination, 0, sizeof(writer->destination));
 	writer->codec.err = errors_init(&writer->errors);
 	writer->out = out;
 }

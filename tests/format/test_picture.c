@@ -56,6 +56,22 @@ static void jpeg_is_near_and_opaque(void **state)
 }
 
 /* Every truncation, in memory of its exact size. */
+static void a_full_buffer_keeps_what_it_had(void **state)
+{
+	struct picture picture = { 400, 300, malloc(4 * 400 * 300) };
+	struct buffer file;
+
+	(void)state;
+	for (uint32_t i = 0; i < 4 * 400 * 300; i++)
+		picture.rgba[i] = (uint8_t)(i * 2654435761u >> 24);
+	buffer_init(&file, 40000); /* chunks of 16 KiB: two fit */
+	buffer_put_text(&file, "before");
+	assert_int_equal(picture_encode_jpeg(&file, &picture, 95), -EFBIG);
+	CHECK(file.size == 6 && memcmp(file.data, "before", 6) == 0);
+	buffer_finish(&file);
+	picture_finish(&picture);
+}
+
 static void check_truncations(const struct buffer *file, size_t may_miss)
 {
 	for (size_t n = 0; n + may_miss < file->size; n++) {
@@ -126,6 +142,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(png_gives_every_pixel_back),
 		cmocka_unit_test(jpeg_is_near_and_opaque),
+		cmocka_unit_test(a_full_buffer_keeps_what_it_had),
 		cmocka_unit_test(refuses_a_huge_jpeg_before_room_is_made_for_it),
 		cmocka_unit_test(refuses_every_truncated_file),
 	};
