@@ -27,8 +27,10 @@ static const struct scale_space_options scale_options = { VERTEX_SCALES, { 1, 2,
 struct looker {
 	struct model *model;
 	struct raster *raster;
-	float *inverse_m; /* SIDE_PX squared */
 	uint32_t *pieces;
+	/* The range image, of which only the rectangle that shows something is kept. */
+	float *inverse_m;
+	uint32_t left, top, width, height;
 };
 
 /* The six sides and the eight corners of a cube. */
@@ -58,6 +60,45 @@ static void place_camera(struct camera *out, const struct model *model, int view
 	vec_add_scaled(out->eye_m, out->eye_m, away, way);
 }
 
+/* Returns the numbers of eight pixels of the raster; NULL if none shows anything. */
+static const float *row_of_block(const struct looker *looker, uint32_t x, uint32_t y)
+{
+	struct raster_block block;
+
+	if (!raster_get_block(looker->raster, x / RASTER_BLOCK_PX, y / RASTER_BLOCK_PX, &block))
+		return NULL;
+	return &block.inverse_m[y % RASTER_BLOCK_PX * RASTER_BLOCK_PX];
+}
+
+/* Copies the rectangle of blocks that show something. */
+static void keep_seen(struct looker *looker)
+{
+	uint32_t right = 0, bottom = 0;
+
+	looker->left = looker->top = SIDE_PX;
+	for (uint32_t y = 0; y < SIDE_PX; y += RASTER_BLOCK_PX)
+		for (uint32_t x = 0; x < SIDE_PX; x += RASTER_BLOCK_PX) {
+			if (!row_of_block(looker, x, y))
+				continue;
+			looker->left = x < looker->left ? x : looker->left;
+			looker->top = y < looker->top ? y : looker->top;
+			right = x + RASTER_BLOCK_PX > right ? x + RASTER_BLOCK_PX : right;
+			bottom = y + RASTER_BLOCK_PX > bottom ? y + RASTER_BLOCK_PX : bottom;
+		}
+	looker->width = right > looker->left ? right - looker->left : 0;
+	looker->height = bottom > looker->top ? bottom - looker->top : 0;
+	for (uint32_t y = 0; y < looker->height; y++)
+		for (uint32_t x = 0; x < looker->width; x += RASTER_BLOCK_PX) {
+			const float *from = row_of_block(looker, looker->left + x, looker->top + y);
+			float *to = &looker->inverse_m[y * looker->width + x];
+
+			if (from)
+				memcpy(to, from, RASTER_BLOCK_PX * sizeof(*to));
+			else
+				memset(to, 0, RASTER_BLOCK_PX * sizeof(*to));
+		}
+}
+
 static int draw(struct looker *looker, const struct camera *camera)
 {
 	const uint32_t count = model_choose(looker->model, camera->eye_m, 0, looker->pieces);
@@ -71,17 +112,7 @@ static int draw(struct looker *looker, const struct camera *camera)
 			return rc;
 		raster_draw(looker->raster, &mesh);
 	}
-	memset(looker->inverse_m, 0, (size_t)SIDE_PX * SIDE_PX * sizeof(*looker->inverse_m));
-	for (uint32_t y = 0; y < SIDE_PX; y++)
-		for (uint32_t x = 0; x < SIDE_PX; x += RASTER_BLOCK_PX) {
-			struct raster_block block;
-
-			if (raster_get_block(looker->raster, x / RASTER_BLOCK_PX,
-					     y / RASTER_BLOCK_PX, &block))
-				memcpy(&looker->inverse_m[y * SIDE_PX + x],
-				       &block.inverse_m[y % RASTER_BLOCK_PX * RASTER_BLOCK_PX],
-				       RASTER_BLOCK_PX * sizeof(float));
-		}
+	keep_seen(looker);
 	return 0;
 }
 
@@ -91,10 +122,10 @@ static uint8_t scale_around(const struct scale_map *map, uint32_t x, uint32_t y)
 {
 	uint8_t most = 0;
 
-	for (uint32_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < SIDE_PX; v++)
-		for (uint32_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < SIDE_PX; u++)
-			if (map->scales[v * SIDE_PX + u] > most)
-				most = map->scales[v * SIDE_PX + u];
+	for (uint32_t v = y > 0 ? y - 1 : 0; v <= y + 1 && v < map->height_px; v++)
+		for (uint32_t u = x > 0 ? x - 1 : 0; u <= x + 1 && u < map->width_px; u++)
+			if (map->scales[v * map->width_px + u] > most)
+				most = map->scales[v * map->width_px + u];
 	return most;
 }
 
@@ -112,9 +143,10 @@ static void look_up(uint8_t *out, const struct reduced_mesh *copy, const struct 
 		for (int k = 0; k < 3; k++)
 			at[k] = axes[k] * p[0] + axes[4 + k] * p[1] + axes[8 + k] * p[2] +
 				axes[12 + k];
-		const float x = SIDE_PX / 2 - px * at[0] / at[2];
-		const float y = SIDE_PX / 2 + px * at[1] / at[2];
-		if (at[2] >= 0 || !(x >= 0 && y >= 0 && x < SIDE_PX && y < SIDE_PX))
+		const float x = SIDE_PX / 2 - px * at[0] / at[2] - (float)looker->left;
+		const float y = SIDE_PX / 2 + px * at[1] / at[2] - (float)looker->top;
+		if (at[2] >= 0 ||
+		    !(x >= 0 && y >= 0 && x < (float)looker->width && y < (float)looker->height))
 			continue;
 		float towards[3];
 
@@ -123,7 +155,7 @@ static void look_up(uint8_t *out, const struct reduced_mesh *copy, const struct 
 		if (vec_dot(copy->normals[i], towards) < facing_least)
 			continue;
 		const uint32_t column = (uint32_t)x, row = (uint32_t)y;
-		if (-at[2] * looker->inverse_m[row * SIDE_PX + column] > 1 + depth_share)
+		if (-at[2] * looker->inverse_m[row * looker->width + column] > 1 + depth_share)
 			continue;
 		const uint8_t scale = scale_around(map, column, row);
 		out[i] = scale > out[i] ? scale : out[i];
@@ -132,8 +164,6 @@ static void look_up(uint8_t *out, const struct reduced_mesh *copy, const struct 
 
 static int look(uint8_t *out, const struct reduced_mesh *copy, struct looker *looker)
 {
-	const struct range_image image = { SIDE_PX, SIDE_PX, looker->inverse_m };
-
 	for (int view = 0; view < VIEWS; view++) {
 		struct scale_map map;
 		struct camera camera;
@@ -141,6 +171,10 @@ static int look(uint8_t *out, const struct reduced_mesh *copy, struct looker *lo
 
 		place_camera(&camera, looker->model, view);
 		rc = draw(looker, &camera);
+		if (rc == 0 && looker->width == 0)
+			continue;
+		const struct range_image image = { looker->width, looker->height,
+						   looker->inverse_m };
 		if (rc == 0)
 			rc = scale_map_make(&map, &image, &scale_options);
 		if (rc < 0)

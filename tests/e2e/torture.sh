@@ -22,6 +22,10 @@ cp -a "$work/keys" "$work/both_forms"
 "$content" keys --keys "$work/both_forms" --tuf >"$work/log" 2>&1 || { cat "$work/log"; fail keys; }
 printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n' >"$work/gopura.conf"
 cp "$work/keys/root/1.json" "$work/"
+mkdir "$work/pillar"
+python3 tests/tools/leaning_pillar.py "$work/pillar" 0
+printf '[model]\nscans = pillar.obj\n' >"$work/pillar/temple.ini"
+"$content" export "$work/pillar" --budget 20kB --out "$work/pillar.glb" >"$work/log" 2>&1 || { cat "$work/log"; fail export; }
 
 # use NAME SETTING...: one use of a program, from a fresh state, with these settings of the shim for the program alone
 use() {
@@ -30,6 +34,7 @@ use() {
 	case $name in
 	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
 	exchange) command=("$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp) ;;
+	export) command=("$content" export "$work/pillar" --budget 20kB --out "$work/new.glb") ;;
 	temple) command=("$content" temple --triangles 10000 --out "$work/new.ply") ;;
 	inspect) command=("$content" inspect "$work/release") ;;
 	verify) command=("$content" verify "$work/release") ;;
@@ -42,7 +47,7 @@ use() {
 }
 # prepare NAME: what a use begins with
 prepare() {
-	rm -rf "$work/new" "$work/fresh" "$work/made" "$work/exchanged"
+	rm -rf "$work/new" "$work/new.glb" "$work/fresh" "$work/made" "$work/exchanged"
 	[ "$1" != exchange ] || cp -a "$work/both_forms" "$work/exchanged"
 	[ "$1" = build ] || return 0
 	mkdir "$work/fresh"
@@ -68,6 +73,8 @@ strain() {
 	exchange)
 		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
 			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
+	export)
+		[ ! -e "$work/new.glb" ] || cmp -s "$work/pillar.glb" "$work/new.glb" || fault "export: $2 call $4: the file is not whole" ;;
 	build)
 		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
 			diff -rq "$work/reference/packs" "$work/made/packs" >>"$work/said" || fault "build: $2 call $4: the next one makes another release" ;;
@@ -89,7 +96,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys exchange temple inspect verify import publish setup build}; do
+for name in ${USES:-keys exchange export temple inspect verify import publish setup build}; do
 	all "$name" memory 12
 	all "$name" io 5  # EIO
 	all "$name" io 28 # ENOSPC
