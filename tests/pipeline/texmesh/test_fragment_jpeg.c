@@ -58,17 +58,22 @@ struct stage {
 	struct picture shown; /* the file, decoded */
 };
 
-static struct stage stage_make(uint32_t width, uint32_t height, const bool *used)
+static struct stage stage_make_with(uint32_t width, uint32_t height, const bool *used, uint8_t best)
 {
 	struct stage stage = { .rgb = make_rgb(width, height), .width = width, .height = height };
 
 	CHECK(fragment_jpeg_create(&stage.jpeg, stage.rgb, width, height, FRAGMENT_PX, used,
-				   FRAGMENT_JPEG_QUALITY_MOST) == 0);
+				   best) == 0);
 	stage.count = fragment_jpeg_count(stage.jpeg);
 	stage.qualities = malloc(stage.count);
 	memset(stage.qualities, BEST, stage.count);
 	buffer_init(&stage.file, 1 << 24);
 	return stage;
+}
+
+static struct stage stage_make(uint32_t width, uint32_t height, const bool *used)
+{
+	return stage_make_with(width, height, used, BEST);
 }
 
 static void stage_write(struct stage *stage)
@@ -124,26 +129,33 @@ static void stage_finish(struct stage *stage)
 
 static void is_the_plain_file_at_the_best_quality(void **state)
 {
-	struct stage stage = stage_make(200, 136, NULL);
-	struct picture plain = { .width = 200, .height = 136, .rgba = malloc(200 * 136 * 4) }, back;
-	struct buffer file;
+	static const uint8_t bests[] = { 30, 60, 90, BEST };
+	struct picture plain = { .width = 200, .height = 136, .rgba = malloc(200 * 136 * 4) };
 
 	(void)state;
-	for (int i = 0; i < 200 * 136; i++) {
-		memcpy(plain.rgba + 4 * i, stage.rgb + 3 * i, 3);
-		plain.rgba[4 * i + 3] = 255;
+	for (size_t i = 0; i < ARRAY_COUNT(bests); i++) {
+		struct stage stage = stage_make_with(200, 136, NULL, bests[i]);
+		struct picture back;
+		struct buffer file;
+
+		for (int k = 0; k < 200 * 136; k++) {
+			memcpy(plain.rgba + 4 * k, stage.rgb + 3 * k, 3);
+			plain.rgba[4 * k + 3] = 255;
+		}
+		buffer_init(&file, 1 << 24);
+		CHECK(picture_encode_jpeg(&file, &plain, bests[i]) == 0);
+		CHECK(picture_decode(&back, buffer_bytes(&file)) == 0);
+		CHECK(stage.count == 4 * 3);
+		stage_write(&stage); /* at 95, which is taken for the best */
+		CHECK(memcmp(stage.shown.rgba, back.rgba, 200 * 136 * 4) == 0);
+		CHECK(bests[i] < BEST || stage_error(&stage) < 16);
+		CHECK(fragment_jpeg_bytes(stage.jpeg, 0, BEST) ==
+		      fragment_jpeg_bytes(stage.jpeg, 0, bests[i]));
+		buffer_finish(&file);
+		picture_finish(&back);
+		stage_finish(&stage);
 	}
-	buffer_init(&file, 1 << 24);
-	CHECK(picture_encode_jpeg(&file, &plain, BEST) == 0);
-	CHECK(picture_decode(&back, buffer_bytes(&file)) == 0);
-	CHECK(stage.count == 4 * 3);
-	stage_write(&stage);
-	CHECK(memcmp(stage.shown.rgba, back.rgba, 200 * 136 * 4) == 0);
-	CHECK(stage_error(&stage) < 16);
-	buffer_finish(&file);
-	picture_finish(&back);
 	picture_finish(&plain);
-	stage_finish(&stage);
 }
 
 static bool is_within(uint32_t x, uint32_t from, uint32_t to, uint32_t border)
@@ -418,6 +430,8 @@ static void refuses_sizes_that_it_cannot_take(void **state)
 		      -EINVAL);
 		CHECK(jpeg == NULL);
 	}
+	CHECK(fragment_jpeg_create(&jpeg, rgb, 1, 1, 16, NULL, 0) == -EINVAL);
+	CHECK(fragment_jpeg_create(&jpeg, rgb, 1, 1, 16, NULL, 96) == -EINVAL);
 	CHECK(fragment_jpeg_create(&jpeg, rgb, 1, 1, UINT32_MAX - 15, NULL, 95) == 0);
 	CHECK(fragment_jpeg_count(jpeg) == 1);
 	fragment_jpeg_destroy(jpeg);
