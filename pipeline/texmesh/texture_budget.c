@@ -373,24 +373,29 @@ static int meet_at_best(struct work *work, struct buffer *jpegs, struct texture_
 	return rc == -E2BIG && low > 0 ? meet_with(work, bests[low - 1], jpegs, out) : rc;
 }
 
+/* Lists the textures that are pictures and that some triangle shows. */
 static int list_pictures(struct work *work)
 {
 	const struct mesh *scan = work->options->scan;
+	const struct reduced_mesh *copy = work->options->copy;
+	bool *shown = calloc((size_t)scan->texture_count + 1, sizeof(*shown));
 
 	work->pictures = calloc((size_t)scan->texture_count + 1, sizeof(*work->pictures));
 	work->picture_of = calloc((size_t)scan->texture_count + 1, sizeof(*work->picture_of));
-	if (!work->pictures || !work->picture_of)
+	if (!shown || !work->pictures || !work->picture_of) {
+		free(shown);
 		return -ENOMEM;
-	for (uint32_t t = 0; t < scan->texture_count; t++)
-		if (scan->textures[t].width * scan->textures[t].height > 1)
-			work->picture_count++;
-	for (uint32_t t = 0, p = 0; t < scan->texture_count; t++) {
-		const bool is_picture = scan->textures[t].width * scan->textures[t].height > 1;
-
-		work->picture_of[t] = is_picture ? p : work->picture_count;
-		if (is_picture)
-			work->pictures[p++].texture = t;
 	}
+	for (uint32_t i = 0; i < copy->vertex_count; i++)
+		shown[copy->materials[i]] = true;
+	for (uint32_t t = 0; t < scan->texture_count; t++) {
+		shown[t] = shown[t] && scan->textures[t].width * scan->textures[t].height > 1;
+		if (shown[t])
+			work->pictures[work->picture_count++].texture = t;
+	}
+	for (uint32_t t = 0, p = 0; t < scan->texture_count; t++)
+		work->picture_of[t] = shown[t] ? p++ : work->picture_count;
+	free(shown);
 	return 0;
 }
 
@@ -400,7 +405,7 @@ int texture_budget_meet(struct buffer *jpegs, struct texture_result *out,
 	struct work work = { .options = options };
 	int rc = list_pictures(&work);
 
-	*out = (struct texture_result){ 0 };
+	*out = (struct texture_result){ .is_best = work.picture_count == 0 };
 	if (rc == 0 && work.picture_count > 0) {
 		rc = -E2BIG;
 		for (uint32_t halvings = 0; rc == -E2BIG && halvings <= HALVINGS_MAX; halvings++) {

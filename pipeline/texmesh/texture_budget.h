@@ -28,7 +28,8 @@ struct texture_result {
 };
 
 /* Sets jpegs, one for each texture of the scan, owned by the caller, zeroed before: empty for those
- * of one pixel. Returns -E2BIG, -ENOMEM, or an error of a JPEG. */
+ * of one pixel, and those that no triangle shows. Returns -E2BIG, -ENOMEM, or an error of a JPEG.
+ */
 must_check int texture_budget_meet(struct buffer *jpegs, struct texture_result *out,
 				   const struct texture_options *options);
 

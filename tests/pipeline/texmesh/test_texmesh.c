@@ -286,6 +286,25 @@ static void a_second_run_gives_the_same_bytes(void **state)
 	mesh_finish(&pillar);
 }
 
+static void a_picture_that_nothing_shows_takes_nothing(void **state)
+{
+	struct mesh pillar = make_pillar();
+	struct texmesh_report report;
+	struct buffer file;
+
+	(void)state;
+	pillar.textures = realloc(pillar.textures, 2 * sizeof(*pillar.textures));
+	pillar.textures[1] = (struct mesh_texture){ 1, 1, calloc(3, 1) };
+	pillar.texture_count = 2;
+	for (uint32_t i = 0; i < pillar.triangle_count; i++)
+		pillar.materials[i] = 1;
+	CHECK(make(&file, &pillar, 100000, false, &report) == 0);
+	CHECK(report.picture_count == 0 && report.picture_bytes == 0);
+	CHECK(file.size > 95000);
+	buffer_finish(&file);
+	mesh_finish(&pillar);
+}
+
 static void what_cannot_be_is_said(void **state)
 {
 	struct mesh pillar = make_pillar(), empty = { 0 };
@@ -319,6 +338,7 @@ int main(void)
 		cmocka_unit_test(a_seam_stays_closed),
 		cmocka_unit_test(colours_of_vertices_are_kept),
 		cmocka_unit_test(a_second_run_gives_the_same_bytes),
+		cmocka_unit_test(a_picture_that_nothing_shows_takes_nothing),
 		cmocka_unit_test(what_cannot_be_is_said),
 	};
 
