@@ -63,8 +63,8 @@ export function setPage(html, isMarked = false) {
 
 // "" if there is nothing on it. A new page has no frame around it.
 export function pageText() {
-  const text = textOf(clean(page.innerHTML));
-  if (!text) return "";
+  const blocks = clean(page.innerHTML), text = textOf(blocks);
+  if (!blocks.textContent.trim() && !blocks.querySelector("img, hr")) return ""; // an empty paragraph, to write in
   return before ? `${before}\n${text}\n${after}` : `${text}\n`;
 }
 

@@ -18,7 +18,7 @@ export async function showPreview(part, language, text) {
   addresses = [];
   for (let n = 0; n < KINDS.length; n++) {
     const [kind, words] = KINDS[n], image = document.createElement("img"), caption = figures[n].firstElementChild;
-    if (kind === "page" && part.without_page && text === null) {
+    if (kind === "page" && part.without_page && !text) {
       caption.textContent = "Opened: it has no page yet";
       continue;
     }

@@ -74,6 +74,9 @@ async function write() {
   await browser.click("#caption");
   await browser.type("Here the upper gallery turns to the south.");
   await browser.until(`document.querySelector("#page").isContentEditable`, "the page");
+  // Changed, and still without a page: its name and its card are shown.
+  await browser.click("#tab-preview");
+  await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 2 && /no page yet/.test(document.querySelector("#preview").textContent)`, "two previews");
   await browser.evaluate(`document.querySelector("#page").focus()`);
   await browser.type("Written by a curator in a browser.");
   await browser.key("s", CONTROL, 83);
