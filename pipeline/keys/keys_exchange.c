@@ -15,21 +15,9 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "pipeline/keys/exchange_roots.h"
+#include "pipeline/keys/keys_path_private.h"
 
 enum { ROOT_BYTES_MAX = 64 << 10 /* what terminals take */ };
-
-static int complain(const char *folder, const char *name, int rc, const char *why)
-{
-	log_error("pipeline", "%s/%s: %s", folder, name, why ? why : strerror(-rc));
-	return rc;
-}
-
-static int join(char path[PATH_MAX], const char *folder, const char *name)
-{
-	return snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX
-		       ? 0
-		       : complain(folder, name, -ENAMETOOLONG, NULL);
-}
 
 /* ---- the keys */
 
@@ -57,7 +45,7 @@ static int read_old(struct exchange *exchange)
 static int get_next(struct exchange *exchange, bool goes_on)
 {
 	char folder[PATH_MAX];
-	int rc = join(folder, exchange->folder, "exchange");
+	int rc = keys_join(folder, exchange->folder, "exchange");
 
 	for (int key = 0; key < EXCHANGE_KEYS && rc == 0; key++) {
 		if (!(exchange->wanted & 1u << key))
@@ -75,15 +63,15 @@ static int get_next(struct exchange *exchange, bool goes_on)
 static int stage(const struct exchange *exchange)
 {
 	char part[PATH_MAX], whole[PATH_MAX], path[2 * PATH_MAX];
-	int rc = join(part, exchange->folder, "exchange.part");
+	int rc = keys_join(part, exchange->folder, "exchange.part");
 
 	if (rc == 0)
-		rc = join(whole, exchange->folder, "exchange");
+		rc = keys_join(whole, exchange->folder, "exchange");
 	if (rc < 0)
 		return rc;
 	bytes_remove_folder(part); /* of an earlier exchange */
 	if (mkdir(part, 0700) < 0)
-		return complain(exchange->folder, "exchange.part", -errno, NULL);
+		return keys_complain(exchange->folder, "exchange.part", -errno, NULL);
 	for (int key = 0; key < EXCHANGE_KEYS && rc == 0; key++) {
 		snprintf(path, sizeof(path), "%s/%s.key", part, exchange_key_names[key]);
 		if (exchange->wanted & 1u << key)
@@ -92,7 +80,7 @@ static int stage(const struct exchange *exchange)
 	if (rc == 0)
 		rc = keys_sync_folder(part);
 	if (rc == 0 && rename(part, whole) < 0)
-		rc = complain(exchange->folder, "exchange", -errno, NULL);
+		rc = keys_complain(exchange->folder, "exchange", -errno, NULL);
 	return rc < 0 ? rc : keys_sync_folder(exchange->folder);
 }
 
@@ -104,7 +92,7 @@ static int take_next(const struct exchange *exchange, enum exchange_key key, uns
 	const bool is_present = exchange->present & 1u << key;
 	int rc = snprintf(path, sizeof(path), "%s/%s.key", exchange->folder, name) < PATH_MAX
 			 ? 0
-			 : complain(exchange->folder, name, -ENAMETOOLONG, NULL);
+			 : keys_complain(exchange->folder, name, -ENAMETOOLONG, NULL);
 
 	if (rc < 0)
 		return rc;
@@ -124,10 +112,10 @@ static int take_next(const struct exchange *exchange, enum exchange_key key, uns
 static int take_all(const struct exchange *exchange, unsigned *kept)
 {
 	char part[PATH_MAX], whole[PATH_MAX];
-	int rc = join(part, exchange->folder, "exchange.part");
+	int rc = keys_join(part, exchange->folder, "exchange.part");
 
 	if (rc == 0)
-		rc = join(whole, exchange->folder, "exchange");
+		rc = keys_join(whole, exchange->folder, "exchange");
 	for (int key = 0; key < EXCHANGE_KEYS && rc == 0; key++)
 		if (exchange->wanted & 1u << key)
 			rc = take_next(exchange, key, kept);
@@ -137,7 +125,7 @@ static int take_all(const struct exchange *exchange, unsigned *kept)
 		return rc;
 	bytes_remove_folder(part);
 	if (rename(whole, part) < 0)
-		return complain(exchange->folder, "exchange", -errno, NULL);
+		return keys_complain(exchange->folder, "exchange", -errno, NULL);
 	bytes_remove_folder(part);
 	return keys_sync_folder(exchange->folder);
 }
@@ -154,9 +142,9 @@ static int write_root(const struct exchange *exchange, const char *form, struct 
 	snprintf(name, sizeof(name),
 		 form[0] == 't' ? "tuf/%" PRIu32 ".root.json" : "root/%" PRIu32 ".json",
 		 ++root->version);
-	rc = join(path, exchange->folder, name);
+	rc = keys_join(path, exchange->folder, name);
 	if (rc == 0 && (rc = bytes_write_file(buffer_bytes(&root->file), path)) < 0)
-		complain(exchange->folder, name, rc, NULL);
+		keys_complain(exchange->folder, name, rc, NULL);
 	return rc;
 }
 
@@ -169,12 +157,12 @@ static int make_roots(struct exchange_root *earlier, struct exchange_root *tuf,
 	if (rc == 0)
 		rc = exchange_tuf_root(tuf, exchange);
 	if (rc == 0 && earlier->version == 0 && tuf->version == 0)
-		rc = complain(exchange->folder, "root/1.json", -ENOENT,
-			      "not here, nor tuf/1.root.json: there are no keys to exchange; "
-			      "`gopura-content keys` makes the first ones");
+		rc = keys_complain(exchange->folder, "root/1.json", -ENOENT,
+				   "not here, nor tuf/1.root.json: there are no keys to exchange; "
+				   "`gopura-content keys` makes the first ones");
 	if (rc == 0 && tuf->version == 0 && exchange->wanted & 1u << EXCHANGE_SNAPSHOT)
-		rc = complain(exchange->folder, "tuf/1.root.json", -ENOENT,
-			      "not here: releases in the earlier form have no snapshot.key");
+		rc = keys_complain(exchange->folder, "tuf/1.root.json", -ENOENT,
+				   "not here: releases in the earlier form have no snapshot.key");
 	return rc;
 }
 
@@ -182,7 +170,7 @@ static bool has_snapshot_key(const char *folder)
 {
 	char path[PATH_MAX];
 
-	return join(path, folder, "snapshot.key") == 0 && access(path, F_OK) == 0;
+	return keys_join(path, folder, "snapshot.key") == 0 && access(path, F_OK) == 0;
 }
 
 static int run(struct keys_exchanged *out, struct exchange *exchange)
@@ -219,7 +207,7 @@ static int lock(const char *folder)
 	int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 
 	if (fd < 0)
-		return complain(folder, "", -errno, NULL);
+		return keys_complain(folder, "", -errno, NULL);
 	if (flock(fd, LOCK_EX) < 0)
 		log_debug("pipeline", "%s: cannot be locked: %s", folder, strerror(errno));
 	return fd;

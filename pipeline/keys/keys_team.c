@@ -12,50 +12,38 @@
 
 #include "base/log.h"
 #include "pipeline/keys/keys.h"
+#include "pipeline/keys/keys_path_private.h"
 #include "pipeline/keys/keys_tuf.h"
 #include "tuf/public_key.h"
 
 enum { FILE_BYTES_MAX = 64 << 10 };
 
-static int complain(const char *folder, const char *name, int rc, const char *why)
-{
-	log_error("pipeline", "%s/%s: %s", folder, name, why ? why : strerror(-rc));
-	return rc;
-}
-
-static int join(char path[PATH_MAX], const char *folder, const char *name)
-{
-	return snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX
-		       ? 0
-		       : complain(folder, name, -ENAMETOOLONG, NULL);
-}
-
 static bool is_there(const char *folder, const char *name)
 {
 	char path[PATH_MAX];
 
-	return join(path, folder, name) == 0 && access(path, F_OK) == 0;
+	return keys_join(path, folder, name) == 0 && access(path, F_OK) == 0;
 }
 
 static int make_folders(const char *folder)
 {
 	char path[PATH_MAX];
-	int rc = join(path, folder, "tuf");
+	int rc = keys_join(path, folder, "tuf");
 
 	if (rc == 0 && mkdir(folder, 0700) < 0 && errno != EEXIST)
-		rc = complain(folder, "", -errno, NULL);
+		rc = keys_complain(folder, "", -errno, NULL);
 	if (rc == 0 && mkdir(path, 0755) < 0 && errno != EEXIST)
-		rc = complain(folder, "tuf", -errno, NULL);
+		rc = keys_complain(folder, "tuf", -errno, NULL);
 	return rc;
 }
 
 static int put(const char *folder, const char *name, struct bytes file)
 {
 	char path[PATH_MAX];
-	int rc = join(path, folder, name);
+	int rc = keys_join(path, folder, name);
 
 	if (rc == 0 && (rc = bytes_write_file(file, path)) < 0)
-		complain(folder, name, rc, NULL);
+		keys_complain(folder, name, rc, NULL);
 	return rc;
 }
 
@@ -74,12 +62,12 @@ static int copy_root(const char *folder, const char *from, uint32_t version)
 	rc = keys_read_tuf_root(&theirs, from, version);
 	had = keys_read_tuf_root(&ours, folder, version);
 	if (rc == -ENOENT && version == 1)
-		complain(from, name, rc,
-			 "missing; the museum hands over the folder tuf of its keys");
+		keys_complain(from, name, rc,
+			      "missing; the museum hands over the folder tuf of its keys");
 	else if (rc < 0 && rc != -ENOENT)
-		complain(from, name, rc, NULL);
+		keys_complain(from, name, rc, NULL);
 	else if (rc == 0 && had == 0 && !bytes_equal(buffer_bytes(&theirs), buffer_bytes(&ours)))
-		rc = complain(
+		rc = keys_complain(
 			folder, name, -EEXIST,
 			"another root than the museum's; begin with an empty folder (--keys)");
 	else if (rc == 0 && had < 0)
@@ -105,7 +93,7 @@ static int copy_key(const char *folder, const char *from, const char *name)
 	char path[PATH_MAX];
 	struct signing_key key;
 	struct buffer file;
-	int rc = join(path, from, name);
+	int rc = keys_join(path, from, name);
 
 	if (rc < 0 || access(path, F_OK) < 0)
 		return rc;
@@ -117,10 +105,10 @@ static int copy_key(const char *folder, const char *from, const char *name)
 	if (rc == 0)
 		rc = file.error;
 	if (rc < 0)
-		complain(from, name, rc, rc == -EBADMSG ? "not a key of gopura" : NULL);
-	else if ((rc = join(path, folder, name)) == 0 &&
+		keys_complain(from, name, rc, rc == -EBADMSG ? "not a key of gopura" : NULL);
+	else if ((rc = keys_join(path, folder, name)) == 0 &&
 		 (rc = keys_write_private(path, (const char *)file.data)) < 0)
-		complain(folder, name, rc, NULL);
+		keys_complain(folder, name, rc, NULL);
 	if (file.data)
 		sodium_memzero(file.data, file.size);
 	sodium_memzero(&key, sizeof(key));
@@ -140,7 +128,7 @@ static int make_own_key(const char *folder, const char *role)
 	buffer_init(&file, FILE_BYTES_MAX);
 	snprintf(name, sizeof(name), "%s.pub", role);
 	if (rc == 0 && (rc = tuf_public_key_write(&file, key.public_key)) < 0)
-		complain(folder, name, rc, NULL);
+		keys_complain(folder, name, rc, NULL);
 	if (rc == 0)
 		rc = put(folder, name, buffer_bytes(&file));
 	sodium_memzero(&key, sizeof(key));
@@ -168,9 +156,10 @@ int keys_make_team(const char *folder, const char *role, const char *handed_over
 	int rc;
 
 	if (is_there(folder, "root/1.json"))
-		return complain(folder, "root/1.json", -EEXIST,
-				"these keys publish a temple by themselves; keep those of the role "
-				"in another folder (--keys)");
+		return keys_complain(
+			folder, "root/1.json", -EEXIST,
+			"these keys publish a temple by themselves; keep those of the role "
+			"in another folder (--keys)");
 	if (is_there(handed_over, "release.key") || is_there(handed_over, "root.key"))
 		log_warn("pipeline",
 			 "%s has the museum's own keys, with which one can publish every temple: "

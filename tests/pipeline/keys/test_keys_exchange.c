@@ -16,6 +16,7 @@
 #include "pipeline/keys/keys_tuf.h"
 #include "pipeline/keys/signing.h"
 #include "tests/check.h"
+#include "tests/pipeline/keys/failing_disk.h"
 #include "tuf/sign.h"
 
 enum {
@@ -61,41 +62,6 @@ static int end(void **state)
 }
 
 /* ---- a disk that fails from the n-th call on */
-
-static int calls_left = -1; /* -1: nothing fails */
-
-static bool fails_now(void)
-{
-	if (calls_left > 0)
-		calls_left--;
-	if (calls_left == 0)
-		errno = ENOSPC;
-	return calls_left == 0;
-}
-
-int __real_mkdir(const char *path, mode_t mode);
-int __wrap_mkdir(const char *path, mode_t mode);
-ssize_t __real_write(int fd, const void *data, size_t size);
-ssize_t __wrap_write(int fd, const void *data, size_t size);
-int __real_fsync(int fd);
-int __wrap_fsync(int fd);
-int __real_rename(const char *from, const char *to);
-int __wrap_rename(const char *from, const char *to);
-
-int __wrap_mkdir(const char *path, mode_t mode)
-{
-	return fails_now() ? -1 : __real_mkdir(path, mode);
-}
-
-ssize_t __wrap_write(int fd, const void *data, size_t size)
-{
-	return fails_now() ? -1 : __real_write(fd, data, size);
-}
-
-int __wrap_fsync(int fd)
-{
-	return fails_now() ? -1 : __real_fsync(fd);
-}
 
 int __wrap_rename(const char *from, const char *to)
 {
