@@ -13,11 +13,6 @@
 
 enum { PNG_BYTES_MAX = 1 << 30 };
 
-static bool is_colour(const struct mesh_texture *texture)
-{
-	return texture->width == 1 && texture->height == 1;
-}
-
 /* Returns the length of a path without its ".obj"; -EINVAL. */
 static int stem_of(const char *path)
 {
@@ -71,7 +66,7 @@ static int write_materials(const struct mesh *mesh, const char *path, int stem)
 		const struct mesh_texture *texture = &mesh->textures[i];
 
 		buffer_print(&text, "newmtl m%u\n", i);
-		if (is_colour(texture)) {
+		if (mesh_texture_is_colour(texture)) {
 			buffer_print(&text, "Kd %.5f %.5f %.5f\n", texture->rgb[0] / 255.0,
 				     texture->rgb[1] / 255.0, texture->rgb[2] / 255.0);
 			continue;

@@ -4,6 +4,7 @@
 #ifndef GOPURA_PIPELINE_IMPORT_MESH_H
 #define GOPURA_PIPELINE_IMPORT_MESH_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,6 +20,11 @@ struct mesh_texture {
 	uint32_t width, height;
 	uint8_t *rgb; /* owned */
 };
+
+static inline bool mesh_texture_is_colour(const struct mesh_texture *texture)
+{
+	return texture->width == 1 && texture->height == 1;
+}
 
 /* One of the files that a mesh was made from. Its triangles follow those of the previous scan. */
 struct mesh_scan {

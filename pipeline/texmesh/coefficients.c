@@ -14,8 +14,8 @@ static int plane_init(struct coefficient_plane *plane, const struct coefficients
 {
 	plane->unit_blocks = is_colour ? 1 : 2;
 	plane->table = is_colour;
-	plane->columns = parts(coefficients->width_px, COEFFICIENT_UNIT_PX / plane->unit_blocks);
-	plane->rows = parts(coefficients->height_px, COEFFICIENT_UNIT_PX / plane->unit_blocks);
+	plane->columns = parts(coefficients->width_px, FRAGMENT_JPEG_UNIT_PX / plane->unit_blocks);
+	plane->rows = parts(coefficients->height_px, FRAGMENT_JPEG_UNIT_PX / plane->unit_blocks);
 	plane->blocks = calloc((size_t)plane->columns * plane->rows,
 			       COEFFICIENTS_OF_BLOCK * sizeof(*plane->blocks));
 	return plane->blocks ? 0 : -ENOMEM;
@@ -30,8 +30,8 @@ int coefficients_init(struct coefficients *coefficients, uint32_t width_px, uint
 	memset(coefficients, 0, sizeof(*coefficients));
 	coefficients->width_px = width_px;
 	coefficients->height_px = height_px;
-	coefficients->unit_columns = parts(width_px, COEFFICIENT_UNIT_PX);
-	coefficients->unit_rows = parts(height_px, COEFFICIENT_UNIT_PX);
+	coefficients->unit_columns = parts(width_px, FRAGMENT_JPEG_UNIT_PX);
+	coefficients->unit_rows = parts(height_px, FRAGMENT_JPEG_UNIT_PX);
 	coefficients->fragment_units = fragment_units;
 	coefficients->columns = parts(coefficients->unit_columns, fragment_units);
 	coefficients->rows = parts(coefficients->unit_rows, fragment_units);

@@ -8,15 +8,12 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "base/compiler.h"
+#include "pipeline/texmesh/fragment_jpeg.h"
 
 enum {
 	COEFFICIENT_PLANES = 3,     /* brightness, two of colour */
 	COEFFICIENTS_OF_BLOCK = 64, /* 8 x 8 pixels of a plane */
 	COEFFICIENT_MOST = 1023,    /* what a JPEG of 8 bits can hold, either sign */
-	COEFFICIENT_QUALITY_MOST = 95,
-	COEFFICIENT_UNIT_PX =
-		16, /* side of a unit (MCU): 2 x 2 blocks of brightness, 1 of each colour */
 };
 
 struct coefficient_plane {
@@ -35,7 +32,7 @@ struct coefficients {
 	bool *used;              /* owned; for each fragment */
 	struct coefficient_plane planes[COEFFICIENT_PLANES];
 	/* How many steps of the best quality make about one of each quality; in natural order. */
-	uint8_t factors[COEFFICIENT_QUALITY_MOST + 1][2][COEFFICIENTS_OF_BLOCK];
+	uint8_t factors[FRAGMENT_JPEG_QUALITY_MOST + 1][2][COEFFICIENTS_OF_BLOCK];
 };
 
 /* Takes sizes that are not zero. used is copied; NULL: all. All blocks are zero. -ENOMEM; finish it

@@ -15,10 +15,6 @@
 #include "format/jpeg_to_buffer.h"
 #include "pipeline/texmesh/coefficient_bytes.h"
 
-_Static_assert((int)FRAGMENT_JPEG_QUALITY_MOST == (int)COEFFICIENT_QUALITY_MOST &&
-		       (int)FRAGMENT_JPEG_UNIT_PX == (int)COEFFICIENT_UNIT_PX,
-	       "the header has the constants of the private one");
-
 struct fragment_jpeg {
 	struct coefficients coefficients;
 	uint32_t *bytes; /* [fragment][COEFFICIENT_KNOTS] */
@@ -264,7 +260,7 @@ uint32_t fragment_jpeg_bytes(const struct fragment_jpeg *jpeg, uint32_t fragment
 /* ---- coefficients to the file */
 
 /* The first scan has the mean of each block, then each component has one. A division as libjpeg
- * makes it by default saves 2 to 4 % at quality 95, but adds as much as a quarter where most
+ * makes it by default saves 2 to 4 % at quality 95, but adds far more where most
  * coefficients are zero: each bit of a mean in a scan of its own is not compressed. */
 static const jpeg_scan_info scans[] = {
 	{ .comps_in_scan = 3, .component_index = { 0, 1, 2 }, .Ss = 0, .Se = 0 },

@@ -22,7 +22,9 @@
 enum {
 	FRAGMENT_JPEG_QUALITY_MOST = 95, /* better ones take many bytes for nothing to be seen */
 	FRAGMENT_JPEG_SIDE_MOST_PX = 16384,
-	FRAGMENT_JPEG_UNIT_PX = 16, /* the side of a fragment is a multiple of it */
+	/* The side of a fragment is a multiple of it: that of an MCU, which has 2 x 2 blocks of
+	 * brightness and one of each colour. */
+	FRAGMENT_JPEG_UNIT_PX = 16,
 };
 
 struct fragment_jpeg; /* private to fragment_jpeg.c; keeps 3 bytes for each pixel */

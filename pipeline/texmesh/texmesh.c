@@ -36,7 +36,7 @@ struct maker {
 static bool has_pictures(const struct mesh *mesh)
 {
 	for (uint32_t i = 0; mesh->uvs && i < mesh->texture_count; i++)
-		if (mesh->textures[i].width * mesh->textures[i].height > 1)
+		if (!mesh_texture_is_colour(&mesh->textures[i]))
 			return true;
 	return false;
 }
@@ -96,10 +96,9 @@ static int fit_triangles(struct maker *maker, uint64_t most_bytes)
 static int fit_both(struct maker *maker, struct texmesh_report *report)
 {
 	const uint64_t budget = maker->options->budget_bytes - maker->overhead_bytes;
-	const struct texture_options textures = { .scan = maker->scan,
-						  .copy = &maker->whole,
-						  .scales = maker->scales };
-	struct texture_options options = textures;
+	struct texture_options textures = { .scan = maker->scan,
+					    .copy = &maker->whole,
+					    .scales = maker->scales };
 	struct texture_result result = { 0 };
 	const bool pictured = has_pictures(maker->scan);
 	int rc = fit_triangles(maker, pictured ? (uint64_t)(mesh_share * (double)budget) : budget);
@@ -108,9 +107,9 @@ static int fit_both(struct maker *maker, struct texmesh_report *report)
 		return rc;
 	report->mesh_bytes = glb_mesh_bytes(&maker->reduced, maker->options->lit);
 	if (pictured) {
-		options.budget_bytes =
+		textures.budget_bytes =
 			budget > report->mesh_bytes ? budget - report->mesh_bytes : 1;
-		rc = texture_budget_meet(maker->jpegs, &result, &options);
+		rc = texture_budget_meet(maker->jpegs, &result, &textures);
 		if (rc == 0 && result.is_best)
 			rc = fit_triangles(maker, budget - result.bytes);
 	}

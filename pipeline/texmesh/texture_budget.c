@@ -11,12 +11,18 @@
 #include "pipeline/texmesh/fragment_jpeg.h"
 #include "pipeline/texmesh/vertex_scales.h"
 
+enum {
+	FRAGMENT_PX = 32,
+	QUALITY_BEST = FRAGMENT_JPEG_QUALITY_MOST,
+	QUALITY_WORST = 40, /* below it a picture of half the side looks better */
+};
+
 enum { HALVINGS_MAX = 6, SIDE_LEAST_PX = 16, ROUNDS = 6, FILE_BYTES_MAX = 1 << 30 };
 
 /* How much a fragment with the most feature points is better than one with none. */
 static const double deviation = 20;
 
-/* A texture of more than one pixel, its sides halved. */
+/* A texture that is no single colour, its sides halved. */
 struct picture {
 	uint32_t texture, width, height, columns, rows;
 	uint8_t *rgb;
@@ -187,8 +193,8 @@ static void count_features(struct work *work)
 		const uint32_t row = fragment_at(1 - uv[1], picture->height, picture->rows);
 		const uint32_t fragment = row * picture->columns + column;
 
-		/* a vertex without triangles may lie where nothing is shown */
-		for (uint32_t s = 0; picture->used[fragment] && s < work->options->scales[i]; s++)
+		/* it is used: the vertex is a corner of some triangle */
+		for (uint32_t s = 0; s < work->options->scales[i]; s++)
 			work->counts[(size_t)s * work->fragment_count +
 				     picture->numbers[fragment]]++;
 	}
@@ -254,7 +260,7 @@ static int write_files(struct work *work, struct buffer *jpegs, uint64_t *bytes)
 
 	*bytes = 0;
 	for (uint32_t p = 0; p < work->picture_count; p++)
-		memset(work->pictures[p].qualities, TEXTURE_QUALITY_WORST,
+		memset(work->pictures[p].qualities, QUALITY_WORST,
 		       (size_t)work->pictures[p].columns * work->pictures[p].rows);
 	for (uint32_t i = 0; i < work->fragment_count; i++) {
 		const struct used_fragment *f = &work->fragments[i];
@@ -302,7 +308,7 @@ static int meet(struct work *work, struct buffer *jpegs, struct texture_result *
 		.deviation = work->options->scales ? deviation : 0,
 		/* a file has at most its best, which those below the mean reach with more */
 		.best = (uint8_t)fmin(100, work->best + deviation),
-		.worst = TEXTURE_QUALITY_WORST,
+		.worst = QUALITY_WORST,
 		.budget_bytes = budget,
 		.tile_bytes = fragment_bytes,
 		.user = work,
@@ -354,7 +360,7 @@ static int meet_with(struct work *work, uint8_t best, struct buffer *jpegs,
  * one below is as good as it gets. */
 static int meet_at_best(struct work *work, struct buffer *jpegs, struct texture_result *out)
 {
-	static const uint8_t bests[] = { 45, 55, 65, 75, 85, TEXTURE_QUALITY_BEST };
+	static const uint8_t bests[] = { 45, 55, 65, 75, 85, QUALITY_BEST };
 	uint32_t low = 0, high = sizeof(bests) - 1, at = high;
 	int rc = 0;
 
@@ -389,7 +395,7 @@ static int list_pictures(struct work *work)
 	for (uint32_t i = 0; i < copy->vertex_count; i++)
 		shown[copy->materials[i]] = true;
 	for (uint32_t t = 0; t < scan->texture_count; t++) {
-		shown[t] = shown[t] && scan->textures[t].width * scan->textures[t].height > 1;
+		shown[t] = shown[t] && !mesh_texture_is_colour(&scan->textures[t]);
 		if (shown[t])
 			work->pictures[work->picture_count++].texture = t;
 	}

@@ -6,12 +6,6 @@
 #include "base/bytes.h"
 #include "pipeline/texmesh/reduced_mesh.h"
 
-enum {
-	FRAGMENT_PX = 32,
-	TEXTURE_QUALITY_BEST = 95,
-	TEXTURE_QUALITY_WORST = 40, /* below it a picture of half the side looks better */
-};
-
 struct texture_options {
 	const struct mesh *scan;         /* borrowed, as all here */
 	const struct reduced_mesh *copy; /* of the scan: where its pictures are used */
