@@ -29,7 +29,6 @@ struct poll {
 	int64_t next_ms;
 	uint32_t failures;
 	bool logged_refusal; /* a missing or oversized file was logged */
-	bool stamped;        /* a new timestamp was passed on, and no release since */
 	enum stage stage;
 	struct http_request *request;
 	struct buffer body;
@@ -73,7 +72,6 @@ static void reset(struct poll *poll)
 	forget(&poll->root);
 	forget(&poll->timestamp);
 	forget(&poll->release);
-	poll->stamped = false;
 }
 
 void poll_stop(struct poll *poll)
@@ -158,7 +156,8 @@ static bool on_piece(void *data, struct bytes piece)
 	return !poll->body.error;
 }
 
-/* Handles the body of an answer: stores it and passes it on if it changed. */
+/* Handles the body of an answer: stores it and, unless it is a release, passes it on if it changed.
+ */
 static void take_body(struct poll *poll, const char *etag)
 {
 	struct known *known = known_of_stage(poll);
@@ -177,10 +176,8 @@ static void take_body(struct poll *poll, const char *etag)
 		poll->stage = STAGE_VERDICT;
 		poll->verdict_ms = clock_now_ms() + VERDICT_MS;
 		pass_on(poll, META_ROOT, poll->root_version + 1, known);
-	} else {
-		poll->stamped = poll->stage == STAGE_TIMESTAMP;
-		pass_on(poll, poll->stage == STAGE_TIMESTAMP ? META_TIMESTAMP : META_RELEASE, 0,
-			known);
+	} else if (poll->stage == STAGE_TIMESTAMP) {
+		pass_on(poll, META_TIMESTAMP, 0, known);
 	}
 }
 
@@ -232,12 +229,11 @@ static void on_done(void *data, const struct http_result *result)
 	else if (rc < 0 && poll->stage != STAGE_ROOT) /* usually there is no newer root */
 		note_refusal(poll, path_of_stage(poll, path), result->why);
 	if (poll->stage == STAGE_RELEASE) {
-		/* If both files are published between two rounds, the release may arrive before the
-		 * timestamp that names it and be rejected. It is passed on again, because now it
-		 * matches. */
-		if (poll->stamped)
+		/* Passed on in every round, because what was missing may be there by now: the
+		 * timestamp that names this release, or the root of The Update Framework that it
+		 * promises. */
+		if (rc == 0)
 			pass_on(poll, META_RELEASE, 0, &poll->release);
-		poll->stamped = false;
 		pause_round(poll, period_ms(poll));
 		return;
 	}

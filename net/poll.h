@@ -1,9 +1,9 @@
 /* Checks regularly for signed metadata (format/metadata.h): the next root, timestamp.json and
- * release.json, in this order. Changed files are passed on as received; the kiosk checks the
- * signatures. A root counts only when the kiosk confirms it (poll_trust), never because a server
- * sent it: each round requests the root after the kiosk's. For a kiosk that follows The Update
- * Framework, a round is tuf/timestamp.json alone, which is passed on whether it changed or not. One
- * thread. */
+ * release.json, in this order. Changed files, and the release in every round, are passed on as
+ * received; the kiosk checks the signatures. A root counts only when the kiosk confirms it
+ * (poll_trust), never because a server sent it: each round requests the root after the kiosk's. For
+ * a kiosk that follows The Update Framework, a round is tuf/timestamp.json alone, which is passed
+ * on whether it changed or not. One thread. */
 #ifndef GOPURA_NET_POLL_H
 #define GOPURA_NET_POLL_H
 

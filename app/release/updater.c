@@ -438,14 +438,14 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		if (rc >= 0 && updater->options.ask &&
 		    tuf_follower_begin_first(&updater->tuf, release.tuf_root, source))
 			updater->options.ask(updater->options.data, &updater->tuf.ask);
+		else if (rc >= 0)
+			updater->said[0] = '\0';
 		break;
 	}
 	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused))
 		refuse(updater, name, why);
 	if (role == META_TIMESTAMP)
 		updater->stamp_refused = rc < 0;
-	if (rc >= 0 && role == META_RELEASE)
-		updater->said[0] = '\0';
 }
 
 uint32_t updater_root_version(const struct updater *updater)

@@ -24,16 +24,21 @@ cp -a "$release" "$work/exchanged"
 (release=$work/exchanged publish "whose root was exchanged")
 rm -rf "$work/exchanged/tuf"
 cp -a "$work/strange/tuf" "$release/tuf"
-cp -a "$work/exchanged/." "$release/"
+cp -au "$work/exchanged/." "$release/"
 wait_for 60 "a release of the earlier form" shown field 2
 wait_for 30 "the refusal of a root of strangers" said field 'refused tuf/1.root.json: .*not signed by the root keys'
 rm -rf "$release/tuf"
-publish "signed both ways"
+cp -a "$release" "$work/both"
+(release=$work/both publish "signed both ways")
+mv "$work/both/tuf" "$work/later" # a copy to the server may bring the root last
+cp -au "$work/both/." "$release/" # what is newer alone: quick, as a publisher is
 wait_for 60 "the release signed both ways" shown field 3
+wait_for 30 "a root that is not there" said field 'refused tuf/1.root.json: it is not there'
+cp -a "$work/later" "$release/tuf"
+cp -a "$work/later" "$work/both/tuf"
 wait_for 30 "going over" said field 'root 1 of The Update Framework is trusted from now on'
 
 # ---- what only the earlier form says counts no more, and the earlier form may go
-cp -a "$release" "$work/both"
 publish "without the earlier form"
 mkdir "$work/earlier"
 mv "$release/root" "$release/release.json" "$release/timestamp.json" "$work/earlier/"

@@ -229,6 +229,18 @@ static void stays_with_the_earlier_form_where_strangers_offer_a_root(void **unus
 	CHECK(begun == 2 && updater_root_version(updater) == MESSAGE_TRUST_TUF);
 }
 
+static void goes_over_in_a_later_round_where_the_root_was_not_there_yet(void **unused)
+{
+	(void)unused;
+	museum_close(); /* it has no files */
+	offer_earlier(1, 1);
+	CHECK(begun == 1 && updater_root_version(updater) == 1);
+	CHECK(strstr(updater_refusal(updater)->why, "not there"));
+	publish_root(1);
+	offer_earlier(1, 1); /* the same, in the next round */
+	CHECK(begun == 1 && updater_root_version(updater) == MESSAGE_TRUST_TUF);
+}
+
 static void a_release_below_the_one_that_is_shown_is_refused(void **unused)
 {
 	(void)unused;
@@ -308,6 +320,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		IN_A_MUSEUM(goes_over_and_reads_the_earlier_form_no_more),
 		IN_A_MUSEUM(stays_with_the_earlier_form_where_strangers_offer_a_root),
+		IN_A_MUSEUM(goes_over_in_a_later_round_where_the_root_was_not_there_yet),
 		IN_A_MUSEUM(a_release_below_the_one_that_is_shown_is_refused),
 		IN_A_MUSEUM(a_root_that_withdraws_keys_drops_what_they_signed_and_its_floor),
 		IN_A_MUSEUM(the_signed_time_stands_against_a_clock_that_was_set_back),
