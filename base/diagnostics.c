@@ -41,11 +41,16 @@ static struct diagnostic *get(struct diagnostics *diagnostics, uint32_t i)
 	return i == 0 ? &diagnostics->first : &diagnostics->more[i - 1];
 }
 
-/* Returns the next free element; NULL if the list is full or there is no memory. */
-static struct diagnostic *append(struct diagnostics *diagnostics)
+/* Returns the next free element; NULL if the list is full or there is no memory. In a list of one
+ * an error takes the place of a warning. */
+static struct diagnostic *append(struct diagnostics *diagnostics, int error)
 {
 	const uint32_t n = diagnostics->count;
 
+	if (n == 1 && diagnostics->max <= 1 && error < 0 && diagnostics->first.error == 0) {
+		diagnostics->dropped++;
+		return &diagnostics->first;
+	}
 	if (n > 0 &&
 	    (n >= diagnostics->max || ARRAY_RESERVE(diagnostics->more, diagnostics->more_room, n,
 						    diagnostics->max - 1) < 0)) {
@@ -66,7 +71,7 @@ int diagnostics_add(struct diagnostics *diagnostics, int error, const char *file
 	if (!diagnostics)
 		return error;
 	diagnostics->error_count += error < 0;
-	added = append(diagnostics);
+	added = append(diagnostics, error);
 	if (!added)
 		return error;
 	added->error = error;
@@ -88,6 +93,9 @@ const struct diagnostic *diagnostics_get(const struct diagnostics *diagnostics, 
 
 const char *diagnostics_cause(const struct diagnostics *diagnostics, int error)
 {
+	for (uint32_t i = 0; i < diagnostics->count; i++)
+		if (diagnostics_get(diagnostics, i)->error < 0)
+			return diagnostics_get(diagnostics, i)->text;
 	return diagnostics->count > 0 ? diagnostics->first.text : strerror(-error);
 }
 

@@ -2,10 +2,10 @@
  * names the file, the place and the cure. Modules that read such files add to it; commands print it
  * and programs log it.
  *
- * A zeroed list keeps only the first diagnostic: that is the cause of a failure, and what callers
- * add on the way up are its consequences. The first one lies in the list itself and needs no
- * memory, so that even a lack of memory can be told; with max 0, diagnostics_finish may be left
- * out. One thread. */
+ * A zeroed list keeps only the first error, or the first warning while there is none: that is the
+ * cause of a failure, and what callers add on the way up are its consequences. The first one lies
+ * in the list itself and needs no memory, so that even a lack of memory can be told; with max 0,
+ * diagnostics_finish may be left out. One thread. */
 #ifndef GOPURA_BASE_DIAGNOSTICS_H
 #define GOPURA_BASE_DIAGNOSTICS_H
 
@@ -25,7 +25,7 @@ struct diagnostic {
 };
 
 struct diagnostics {
-	uint32_t max;         /* how many are kept; 0: only the first */
+	uint32_t max;         /* how many are kept; 0: one */
 	uint32_t count;       /* how many are in the list */
 	uint32_t dropped;     /* how many did not fit */
 	uint32_t error_count; /* how many of all are errors */
@@ -43,7 +43,8 @@ int diagnostics_add(struct diagnostics *diagnostics, int error, const char *file
 
 /* Returns a diagnostic, borrowed until the next change of the list. i is less than count. */
 const struct diagnostic *diagnostics_get(const struct diagnostics *diagnostics, uint32_t i);
-/* Returns the text of the first one, borrowed likewise; of the error if there is none. */
+/* Returns the text of the first error, or else warning, borrowed likewise; of `error` if there is
+ * none. */
 const char *diagnostics_cause(const struct diagnostics *diagnostics, int error);
 /* Returns the number of all, with those that did not fit. */
 uint32_t diagnostics_total(const struct diagnostics *diagnostics);

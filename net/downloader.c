@@ -27,7 +27,7 @@ enum {
 	GAP_BYTES = 512,
 	/* A turn is what the line carries in the waiting time. A range is a quarter of it, so that
 	 * another can be on its way while one arrives. */
-	TURN_BYTES_MIN = 8 << 10,
+	TURN_BYTES_MIN = 6 << 10,
 	RANGES_A_TURN = 4,
 	RANGE_BYTES_MAX = 1 << 20,
 	/* An object larger than so many ranges is requested in segments of a range each. */

@@ -45,6 +45,24 @@ static void a_zeroed_list_keeps_the_cause_alone(void **state)
 	CHECK(d.count == 1 && d.dropped == 1 && diagnostics_total(&d) == 2 && !d.more);
 }
 
+static void an_error_is_the_cause_whatever_was_warned_of_before(void **state)
+{
+	struct diagnostics one = { 0 }, several = { .max = 4 };
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct diagnostics *d = i == 0 ? &one : &several;
+
+		diagnostics_add(d, 0, "a.html", 3, "left out");
+		CHECK(strcmp(diagnostics_cause(d, -EIO), "a.html:3: left out") == 0);
+		diagnostics_add(d, -EINVAL, "b.html", 0, "has no title");
+		diagnostics_add(d, -EIO, NULL, 0, "no preview");
+		CHECK(strcmp(diagnostics_cause(d, -EIO), "b.html: has no title") == 0);
+		CHECK(diagnostics_total(d) == 3 && d->error_count == 2);
+		diagnostics_finish(d);
+	}
+}
+
 static void no_list_takes_nothing(void **state)
 {
 	(void)state;
@@ -135,6 +153,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(says_the_place_before_the_sentence),
 		cmocka_unit_test(a_zeroed_list_keeps_the_cause_alone),
+		cmocka_unit_test(an_error_is_the_cause_whatever_was_warned_of_before),
 		cmocka_unit_test(no_list_takes_nothing),
 		cmocka_unit_test(counts_what_does_not_fit),
 		cmocka_unit_test(orders_by_lines_and_keeps_the_rest),

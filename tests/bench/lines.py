@@ -78,7 +78,8 @@ for text in lines:
     came = [(float(when) - began[1], int(down)) for when, down, _ in map(str.split, open(f"{at}/bytes"))]
     is_settled = os.path.exists(f"{at}/film/views.jsonl") and json.loads(open(f"{at}/film/views.jsonl").readline())["settled"]
     row = {"line": f"{kbit} kbit/s, {rtt_ms} ms" + f", {loss} % lost" * (loss != "0") + f", halves every {swing_s} s" * (swing_s != "0"),
-           "wait_ms": int(wait_ms), "first_picture_ms": round(1000 * (pictures[0][0] - began[0]))}
+           "wait_ms": int(wait_ms), "first_packet_ms": round(1000 * came[0][0]),
+           "first_picture_ms": round(1000 * (pictures[0][0] - began[0]))}
     for goal in GOALS_DB:
         first = next((when - began[0] for when, db in pictures if db >= goal), None)
         row[f"db{goal}_ms"] = first and round(1000 * first)

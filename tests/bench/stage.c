@@ -199,8 +199,7 @@ static void land(struct stage *stage, const struct message_want *want)
 		const struct object *object = scene_object(stage->scene, want->hash);
 
 		if (object)
-			stage->bytes_of[object->kind] += bytes.size + STAGE_OBJECT_OVERHEAD;
-		stage->bytes += bytes.size + STAGE_OBJECT_OVERHEAD;
+			stage->bytes_of[object->kind] += bytes.size;
 		stage->objects++;
 		stage_must(map_set(&stage->had, hash_key(want->hash), 1), "memory");
 	}
@@ -237,14 +236,28 @@ static uint64_t ahead_of(const struct stage *stage, uint32_t priority)
 	return ahead;
 }
 
+/* Returns what an object or segment is on the line. Neighbours share a range of a quarter of a
+ * turn. */
+static uint32_t bytes_on_line(struct stage *stage, uint32_t bytes, uint64_t turn)
+{
+	uint32_t headers = bytes * STAGE_PACKET_BYTES / STAGE_BYTES_A_PACKET;
+
+	if (bytes > stage->range_left) {
+		headers += STAGE_RANGE_BYTES + STAGE_PACKET_BYTES;
+		stage->range_left = turn / 4;
+	}
+	stage->range_left -= bytes < stage->range_left ? bytes : stage->range_left;
+	return bytes + headers;
+}
+
 /* Returns when so many bytes have come over the line. */
 static int64_t carry(struct stage *stage, int64_t now_us, uint32_t bytes)
 {
 	int64_t from_us = now_us + stage->options.latency_us;
 
 	from_us = from_us > stage->link_free_us ? from_us : stage->link_free_us;
-	stage->link_free_us = from_us + (int64_t)((bytes + STAGE_OBJECT_OVERHEAD) * 8000000ull /
-						  stage->options.bits_a_second);
+	stage->link_free_us =
+		from_us + (int64_t)(bytes * 8000000ull / stage->options.bits_a_second);
 	return stage->link_free_us;
 }
 
@@ -267,8 +280,10 @@ static bool send_for_object(struct stage *stage, const struct message_want *want
 		if (stage->options.bits_a_second > 0 && ahead > 0 && ahead + flight.bytes > turn)
 			return false;
 		flight.due_us = now_us + stage->options.latency_us;
-		if (stage->options.bits_a_second > 0 && !was_had(stage, want->hash))
-			flight.due_us = carry(stage, now_us, flight.bytes);
+		if (!was_had(stage, want->hash))
+			flight.line_bytes = bytes_on_line(stage, flight.bytes, turn);
+		if (stage->options.bits_a_second > 0 && flight.line_bytes > 0)
+			flight.due_us = carry(stage, now_us, flight.line_bytes);
 		asked += flight.bytes;
 		flight.last = asked == want->size;
 		stage->flight[stage->flights++] = flight;
@@ -299,12 +314,13 @@ static void pass_link(struct stage *stage)
 	for (uint32_t i = 0; i < count; i++) {
 		const struct stage_flight flight = stage->flight[i];
 
-		if (flight.due_us > now_us)
+		if (flight.due_us > now_us) {
 			stage->flight[kept++] = flight;
-		else if (flight.last)
+			continue;
+		}
+		stage->bytes += flight.line_bytes;
+		if (flight.last)
 			land(stage, &flight.want);
-		else
-			stage->bytes += STAGE_OBJECT_OVERHEAD;
 	}
 	stage->flights = kept;
 }

@@ -14,8 +14,12 @@
 enum {
 	STAGE_IN_FLIGHT = 64,
 	STAGE_VIEWS_MAX = 1000,
-	STAGE_KINDS = 16,           /* at least as many as of enum object_kind */
-	STAGE_OBJECT_OVERHEAD = 40, /* bytes of a range's headers, beside its object's */
+	STAGE_KINDS = 16, /* at least as many as of enum object_kind */
+	/* What a line carries beside objects, in bytes, as measured with the fetcher and nginx over
+	 * TLS: the headers of a range, and those of a packet, which has 1448 bytes of a range. */
+	STAGE_RANGE_BYTES = 195,
+	STAGE_PACKET_BYTES = 52,
+	STAGE_BYTES_A_PACKET = 1448,
 };
 
 struct stage_options {
@@ -34,7 +38,8 @@ struct stage_options {
 struct stage_flight {
 	struct message_want want;
 	uint32_t bytes;
-	bool last; /* of its object */
+	uint32_t line_bytes; /* with what its transport adds; 0: a cache would have it */
+	bool last;           /* of its object */
 	int64_t due_us;
 };
 
@@ -50,6 +55,7 @@ struct stage {
 	struct stage_flight flight[STAGE_IN_FLIGHT];
 	uint32_t flights;
 	int64_t link_free_us;
+	uint64_t range_left;     /* bytes that the last range could still have had */
 	struct map had;          /* by hash: what a cache would hold */
 	struct map asked;        /* by hash: bytes sent for of what is not there yet */
 	uint64_t bytes, objects; /* that came for the first time, with what their transport adds */
