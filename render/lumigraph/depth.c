@@ -96,13 +96,14 @@ static int build_programs(struct depth *depth)
 	return 0;
 }
 
-static int make_sheet_of(struct depth *depth, int at, GLenum format, GLenum type, bool *complete)
+/* Makes a texture that depths can be drawn into, and its framebuffer. *complete: whether they can.
+ */
+static int make_sheet_of(struct depth *depth, int at, int width_px, int height_px, bool *complete)
 {
-	const struct depth_layout *layout = &depth->layout;
-	const struct gl_texture_options sheet = { .width_px = layout->across * layout->face_px,
-						  .height_px = layout->rows * layout->face_px,
-						  .format = format,
-						  .type = type,
+	const struct gl_texture_options sheet = { .width_px = width_px,
+						  .height_px = height_px,
+						  .format = depth->format,
+						  .type = depth->type,
 						  .filter = GL_NEAREST,
 						  .repeat = depth->repeats };
 	int rc = gl_texture_create(&depth->sheet[at], &sheet);
@@ -116,18 +117,42 @@ static int make_sheet_of(struct depth *depth, int at, GLenum format, GLenum type
 	return gl_check("making a sheet of depths");
 }
 
-static int make_sheet(struct depth *depth, int at)
+static void drop_sheet(struct depth *depth, int at)
 {
-	bool complete;
-	int rc = make_sheet_of(depth, at, GL_RGB, GL_UNSIGNED_SHORT_5_6_5, &complete);
-	if (rc < 0 || complete)
-		return rc;
-	/* GLES2 does not guarantee which formats can be drawn into; 5, 6 and 5 bits fit into 8 as
-	 * well. */
 	glDeleteFramebuffers(1, &depth->framebuffer[at]);
 	glDeleteTextures(1, &depth->sheet[at]);
-	rc = make_sheet_of(depth, at, GL_RGBA, GL_UNSIGNED_BYTE, &complete);
+	depth->framebuffer[at] = depth->sheet[at] = 0;
+}
+
+/* GLES2 does not guarantee which formats can be drawn into; 5, 6 and 5 bits fit into 8 as well. */
+static int choose_format(struct depth *depth)
+{
+	static const GLenum formats[][2] = { { GL_RGB, GL_UNSIGNED_SHORT_5_6_5 },
+					     { GL_RGBA, GL_UNSIGNED_BYTE } };
+	bool complete = false;
+	int rc = 0;
+	for (size_t i = 0; i < ARRAY_COUNT(formats) && rc == 0 && !complete; i++) {
+		depth->format = formats[i][0];
+		depth->type = formats[i][1];
+		rc = make_sheet_of(depth, 0, 1, 1, &complete);
+		drop_sheet(depth, 0);
+	}
 	return rc < 0 || complete ? rc : -ENOTSUP;
+}
+
+/* With the first face there, not at the start, like the atlas (tiles.c). */
+static int make_sheet(struct depth *depth, int at)
+{
+	const struct depth_layout *layout = &depth->layout;
+	bool complete = true;
+	int rc = depth->sheet[at] ? 0
+				  : make_sheet_of(depth, at, layout->across * layout->face_px,
+						  layout->rows * layout->face_px, &complete);
+	if (rc == 0 && !complete)
+		rc = -EIO;
+	if (rc < 0)
+		drop_sheet(depth, at);
+	return rc;
 }
 
 int depth_init(struct depth *depth, const struct depth_layout *layout)
@@ -139,8 +164,8 @@ int depth_init(struct depth *depth, const struct depth_layout *layout)
 	int rc = build_programs(depth);
 	if (rc == 0)
 		rc = gl_target_create(&depth->raw, layout->face_px, layout->face_px);
-	for (int i = 0; i < layout->sheets && rc == 0; i++)
-		rc = make_sheet(depth, i);
+	if (rc == 0)
+		rc = choose_format(depth);
 	if (rc < 0)
 		depth_finish(depth);
 	return rc;
@@ -149,12 +174,11 @@ int depth_init(struct depth *depth, const struct depth_layout *layout)
 void depth_finish(struct depth *depth)
 {
 	gl_target_destroy(&depth->raw);
-	if (depth->sheet[0]) { /* otherwise there may be no context */
+	if (depth->draw_program) { /* otherwise there may be no context */
 		glDeleteFramebuffers(DEPTH_SHEETS_MAX, depth->framebuffer);
 		glDeleteTextures(DEPTH_SHEETS_MAX, depth->sheet);
-	}
-	if (depth->draw_program)
 		glDeleteProgram(depth->draw_program);
+	}
 	if (depth->grow_program)
 		glDeleteProgram(depth->grow_program);
 	memset(depth, 0, sizeof(*depth));
@@ -280,6 +304,8 @@ void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
 {
 	struct depth_place place = depth_place(depth, slot);
 	int side_px = depth->layout.face_px;
+	if (make_sheet(depth, place.sheet) < 0)
+		return;
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[place.sheet]);
 	glViewport(place.column * side_px, place.row * side_px, side_px, side_px);
 	glDisable(GL_DEPTH_TEST);

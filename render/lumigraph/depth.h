@@ -21,7 +21,9 @@ struct depth_layout {
 
 struct depth {
 	struct gl_target raw; /* the face being drawn */
+	/* 0: not made, because there was no face in it yet */
 	GLuint sheet[DEPTH_SHEETS_MAX], framebuffer[DEPTH_SHEETS_MAX];
+	GLenum format, type; /* of a sheet */
 	GLuint draw_program, grow_program;
 	GLint lattice, axes, far_m, window, base, high;
 	struct depth_layout layout;
@@ -39,9 +41,9 @@ struct depth {
 	} face[TILES_FACES_MAX];
 };
 
-/* Builds programs and textures; needs a current GL context. -ENOTSUP: the driver can draw into
- * neither texture format. Other errors as gl_program_build and gl_texture_create. On failure it is
- * finished. */
+/* Builds programs and finds a format; needs a current GL context. -ENOTSUP: the driver can draw
+ * into neither texture format. Other errors as gl_program_build and gl_texture_create. On failure
+ * it is finished. */
 must_check int depth_init(struct depth *depth, const struct depth_layout *layout);
 /* Frees the GL objects; zeroed is fine. */
 void depth_finish(struct depth *depth);
@@ -63,7 +65,7 @@ void depth_resume(struct depth *depth, face_key face, const float sample_m[3],
  * steps. */
 void depth_patch(const struct depth *depth, const float centre_m[3]);
 /* Writes the face into the square of its slot. cut identifies what was drawn. Leaves the depth
- * framebuffer bound. */
+ * framebuffer bound. Without memory for the slot's sheet it is logged, and nothing is written. */
 void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut);
 /* The position of a face slot. */
 struct depth_place {

@@ -10,23 +10,27 @@
 
 #define NO_SLOT UINT32_MAX
 
-static int make_textures(struct tiles *tiles)
+/* With the first tile, not at the start: a driver that draws on the processor fills it with zeros,
+ * which takes longer than the first picture. */
+static int make_atlas(struct tiles *tiles)
 {
 	const struct gl_texture_options atlas = { .width_px = tiles->atlas_px,
 						  .height_px = tiles->atlas_px,
 						  .format = GL_RGB,
 						  .filter = GL_LINEAR,
 						  .repeat = tiles->repeats };
+	return tiles->atlas ? 0 : gl_texture_create(&tiles->atlas, &atlas);
+}
+
+static int make_indirection(struct tiles *tiles)
+{
 	const struct gl_texture_options indirection = {
 		.width_px = TILES_CELLS * (int)tiles->faces_across,
 		.height_px = TILES_CELLS * (int)tiles->face_rows,
 		.format = GL_RGBA,
 		.filter = GL_NEAREST,
 	};
-	int rc = gl_texture_create(&tiles->atlas, &atlas);
-	if (rc == 0)
-		rc = gl_texture_create(&tiles->indirection, &indirection);
-	return rc;
+	return gl_texture_create(&tiles->indirection, &indirection);
 }
 
 /* Drivers store RGB with four bytes a pixel. */
@@ -72,7 +76,7 @@ int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across
 	tiles->keys = calloc(tiles->face_count, sizeof(*tiles->keys));
 	bool ok = tiles->slot_name && tiles->slot_stamp && tiles->slot_season && tiles->faces &&
 		  tiles->keys;
-	int rc = ok ? make_textures(tiles) : -ENOMEM;
+	int rc = ok ? make_indirection(tiles) : -ENOMEM;
 	if (rc < 0)
 		tiles_finish(tiles);
 	return rc;
@@ -299,6 +303,11 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 {
 	if (tiles_has(tiles, name))
 		return 0;
+	int rc = make_atlas(tiles);
+	if (rc < 0) {
+		decline(tiles, name);
+		return rc;
+	}
 	struct tiles_face *face = face_of(tiles, name.face);
 	if (!face)
 		face = take_face(tiles, name.face);
@@ -308,7 +317,7 @@ int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb)
 	}
 	face->tile_count++; /* keeps the face while a slot is searched */
 	uint32_t slot = take_slot(tiles);
-	int rc = slot == NO_SLOT ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
+	rc = slot == NO_SLOT ? -ENOSPC : map_set(&tiles->slot_of, tile_name_pack(name), slot);
 	if (rc < 0) {
 		if (--face->tile_count == 0)
 			drop_face(tiles, face);

@@ -32,7 +32,8 @@ struct tiles_face {
 };
 
 struct tiles {
-	GLuint atlas, indirection;
+	GLuint atlas; /* 0: not made, because there was no tile yet */
+	GLuint indirection;
 	int atlas_px, slots_across; /* the atlas is square */
 	bool repeats;               /* it repeats; without highp, to keep coordinates near 0 */
 	int slots_before;           /* slots per side at negative coordinates; 0 with highp */
@@ -52,9 +53,9 @@ struct tiles {
 	uint32_t key_count;
 };
 
-/* Allocates the atlas and the face slots. budget_bytes is for the atlas alone, counted as 4 bytes a
- * pixel; it holds at least 4 x 4 slots. faces_across x face_rows is at most TILES_FACES_MAX.
- * -ENOMEM, or as gl_texture_create. */
+/* Allocates the face slots; the atlas comes with the first tile. budget_bytes is for it alone,
+ * counted as 4 bytes a pixel; it holds at least 4 x 4 slots. faces_across x face_rows is at most
+ * TILES_FACES_MAX. -ENOMEM, or as gl_texture_create. */
 must_check int tiles_init(struct tiles *tiles, uint64_t budget_bytes, uint32_t faces_across,
 			  uint32_t face_rows);
 /* Frees everything; zeroed is fine. */
@@ -74,7 +75,8 @@ void tiles_touch(struct tiles *tiles, face_key face, float u0, float v0, float u
 /* Returns whether a tile is resident, in use or not. */
 bool tiles_has(const struct tiles *tiles, struct tile_name name);
 /* Uploads a tile: rgb is SAMPLE_IMAGE_PX square, 3 bytes a pixel. A resident tile is ignored.
- * -ENOSPC: everything there is in use; then it is declined. */
+ * -ENOSPC: everything there is in use; or the atlas could not be made, as gl_texture_create. Then
+ * it is declined. */
 must_check int tiles_put(struct tiles *tiles, struct tile_name name, const uint8_t *rgb);
 /* Returns the slot of a face, -1: none of its tiles is resident. */
 int tiles_face_slot(const struct tiles *tiles, face_key face);
