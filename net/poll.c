@@ -156,8 +156,7 @@ static bool on_piece(void *data, struct bytes piece)
 	return !poll->body.error;
 }
 
-/* Handles the body of an answer: stores it and, unless it is a release, passes it on if it changed.
- */
+/* Stores the body of an answer, and passes on what changed, except a release (on_done). */
 static void take_body(struct poll *poll, const char *etag)
 {
 	struct known *known = known_of_stage(poll);

@@ -96,8 +96,7 @@ static int build_programs(struct depth *depth)
 	return 0;
 }
 
-/* Makes a texture that depths can be drawn into, and its framebuffer. *complete: whether they can.
- */
+/* Makes a texture of depths and its framebuffer. *complete: whether it can be drawn into. */
 static int make_sheet_of(struct depth *depth, int at, int width_px, int height_px, bool *complete)
 {
 	const struct gl_texture_options sheet = { .width_px = width_px,
@@ -300,12 +299,9 @@ void depth_patch(const struct depth *depth, const float centre_m[3])
 	glUniform1f(depth->high, high);
 }
 
-void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
+static void write_square(const struct depth *depth, struct depth_place place)
 {
-	struct depth_place place = depth_place(depth, slot);
 	int side_px = depth->layout.face_px;
-	if (make_sheet(depth, place.sheet) < 0)
-		return;
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[place.sheet]);
 	glViewport(place.column * side_px, place.row * side_px, side_px, side_px);
 	glDisable(GL_DEPTH_TEST);
@@ -314,6 +310,13 @@ void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
 	gl_bind_texture(0, depth->raw.colour);
 	gl_draw_square();
 	glEnable(GL_DEPTH_TEST);
+}
+
+void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut)
+{
+	struct depth_place place = depth_place(depth, slot);
+	if (make_sheet(depth, place.sheet) == 0)
+		write_square(depth, place);
 	struct depth_face *drawn = &depth->face[slot];
 	*drawn = (struct depth_face){ .ready = true, .key = face, .cut = cut };
 	memcpy(drawn->window, depth->begun, sizeof(drawn->window));

@@ -65,7 +65,8 @@ void depth_resume(struct depth *depth, face_key face, const float sample_m[3],
  * steps. */
 void depth_patch(const struct depth *depth, const float centre_m[3]);
 /* Writes the face into the square of its slot. cut identifies what was drawn. Leaves the depth
- * framebuffer bound. Without memory for the slot's sheet it is logged, and nothing is written. */
+ * framebuffer bound. Without memory for the slot's sheet this is logged, and the face has
+ * no depths until it is drawn again. */
 void depth_end(struct depth *depth, int slot, face_key face, uint64_t cut);
 /* The position of a face slot. */
 struct depth_place {

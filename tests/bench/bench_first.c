@@ -7,11 +7,10 @@
  * Prints a line of JSON: the milliseconds until the model is on the panel, until the picture has 25
  * and 30 dB against the truth (view-0000.png in TRUTH), and until it settles, each from the start
  * of the fetcher, and the bytes by 25 and 30 dB; -1: not within S seconds (600); and the decibels
- * at the end. What comes before
- * the first page is counted too: signed metadata, the locator, and a round trip for each of these
- * and for the connection. FOLDER gets a picture after 1, 2, 4, 8 ... seconds. Without the stream
- * everything is as in a release that has none. --window: what is asked for ahead; without it, what
- * the line carries in half a second, as the fetcher does. */
+ * at the end. What comes before the first page is counted too: signed metadata, the locator, and
+ * round trips for each of these and for the connection. FOLDER gets a picture after 1, 2, 4, 8 ...
+ * seconds. Without the stream everything is as in a release that has none. --window: what is asked
+ * for ahead; without it, what the line carries in half a second, as the fetcher does. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -147,6 +146,7 @@ int main(int argc, char **argv)
 {
 	static struct bench bench;
 	struct scene_frame frame = { 0 };
+	double db;
 
 	parse(&bench, argc, argv);
 	stage_read_views(&bench.camera, 1, bench.views, bench.options.width_px,
@@ -171,6 +171,7 @@ int main(int argc, char **argv)
 	}
 	if (frame.settled)
 		bench.settled_ms = now_ms(&bench);
+	db = judge(&bench);
 	printf("{\"kbit\": %llu, \"rtt_ms\": %u, \"stream\": %s, \"first_picture_ms\": %lld, "
 	       "\"db25_ms\": %lld, \"db30_ms\": %lld, \"settled_ms\": %lld, \"bytes_db25\": %llu, "
 	       "\"bytes_db30\": %llu, \"bytes\": %llu, \"db\": %.2f}\n",
@@ -179,7 +180,7 @@ int main(int argc, char **argv)
 	       (long long)bench.first_ms, (long long)bench.db_ms[0], (long long)bench.db_ms[1],
 	       (long long)bench.settled_ms, (unsigned long long)bench.db_bytes[0],
 	       (unsigned long long)bench.db_bytes[1],
-	       (unsigned long long)(bench.stage.bytes + bench.start_bytes), judge(&bench));
+	       (unsigned long long)(bench.stage.bytes + bench.start_bytes), db);
 	stage_close(&bench.stage);
 	return 0;
 }
