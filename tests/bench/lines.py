@@ -50,7 +50,7 @@ def judge(at):
     for i, name in enumerate(names):
         os.symlink(os.path.abspath(f"{work}/truth/view-0000.png"), f"{at}/one/view-{i:04}.png")
         os.symlink(os.path.abspath(f"{at}/film/{name}"), f"{at}/other/view-{i:04}.png")
-    rows = subprocess.run(["build/tests/tools/compare_pictures", f"{at}/one", f"{at}/other"], stdout=subprocess.PIPE, text=True, check=True)
+    rows = subprocess.run(["build/tests/tools/compare_pictures", f"{at}/one", f"{at}/other", ground], stdout=subprocess.PIPE, text=True, check=True)
     db = [row["psnr_db"] for row in map(json.loads, rows.stdout.splitlines()) if "view" in row]
     return [(os.path.getmtime(f"{at}/film/{name}"), value) for name, value in zip(names, db, strict=True)]
 
@@ -69,6 +69,8 @@ def waits(at):
     return out
 
 
+inspected = subprocess.run(["build/gopura-content", "inspect", release], stdout=subprocess.PIPE, text=True, check=True).stdout
+ground = re.search(r"background +(#\w{6})", inspected)[1]
 PICTURE = int(re.search(r"MESSAGE_PRIORITY_PICTURE\s*=\s*(\w+)", open("format/message.h").read())[1], 0)
 rows = []
 for text in lines:

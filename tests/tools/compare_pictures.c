@@ -1,12 +1,15 @@
 /* Compares pictures with the truth.
  *
- *   compare_pictures TRUTH_DIR OTHER_DIR
+ *   compare_pictures TRUTH_DIR OTHER_DIR [#RRGGBB]
  *
  * For every view-NNNN.png of TRUTH_DIR: PSNR and SSIM against the file of the same name in
  * OTHER_DIR, over the union of both silhouettes (alpha = coverage), both on one fixed background,
  * so that an outline that is too wide counts as an error. Prints a JSON line per view, then one
  * with the means and the mean of the worst 5 % (at least one view). SSIM after Wang et al. 2004 on
- * luma, 8 x 8 windows. */
+ * luma, 8 x 8 windows.
+ *
+ * With a colour, both are on that background, a release's, and OTHER_DIR's silhouettes are what
+ * differs from it: for pictures whose alpha is a guess (render/lumigraph/backdrop.h). */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -15,9 +18,14 @@
 
 #include "format/picture.h"
 
-enum { VIEWS_MAX = 1000, WINDOW = 8 };
+enum {
+	VIEWS_MAX = 1000,
+	WINDOW = 8,
+	GROUND_LEVELS =
+		8, /* by how much a background may differ in an image, which is compressed */
+};
 
-static const float background[3] = { 96, 96, 96 };
+static float background[3] = { 96, 96, 96 };
 
 static int read_picture(struct picture *out, const char *folder, int view)
 {
@@ -40,6 +48,23 @@ static float over_background(const struct picture *picture, size_t at, int chann
 	const float alpha = pixel[3] / 255.0f;
 
 	return pixel[channel] * alpha + background[channel] * (1 - alpha);
+}
+
+/* Makes of a picture with coverage what a panel shows, with the silhouette in its alpha. */
+static void show(struct picture *picture)
+{
+	for (size_t i = 0; i < (size_t)picture->width * picture->height; i++) {
+		uint8_t *pixel = picture->rgba + 4 * i, shown[4] = { 0 };
+
+		for (int c = 0; c < 3; c++) {
+			const float value = over_background(picture, i, c);
+
+			shown[c] = (uint8_t)(value + 0.5f);
+			if (fabsf(value - background[c]) > GROUND_LEVELS)
+				shown[3] = 255;
+		}
+		memcpy(pixel, shown, sizeof(shown));
+	}
 }
 
 static bool is_covered(const struct picture *a, const struct picture *b, size_t at)
@@ -125,8 +150,8 @@ static int by_value(const void *a, const void *b)
 	return left < right ? -1 : left > right;
 }
 
-static int compare_view(const char *truth_dir, const char *other_dir, int view, double *psnr,
-			double *ssim)
+static int compare_view(const char *truth_dir, const char *other_dir, int view, bool as_shown,
+			double *psnr, double *ssim)
 {
 	struct picture truth = { 0 }, other = { 0 };
 	int rc = read_picture(&truth, truth_dir, view);
@@ -138,6 +163,8 @@ static int compare_view(const char *truth_dir, const char *other_dir, int view, 
 		fprintf(stderr, "view %d: %s has no picture of the same size\n", view, other_dir);
 		rc = -EINVAL;
 	} else {
+		if (as_shown)
+			show(&other);
 		*psnr = psnr_of(&truth, &other);
 		*ssim = ssim_of(&truth, &other);
 	}
@@ -151,15 +178,18 @@ int main(int argc, char **argv)
 	static double psnr[VIEWS_MAX];
 	double psnr_sum = 0, ssim_sum = 0, worst = 0;
 	int views = 0, worst_count, rc = 0;
+	unsigned rgb = 0;
 
-	if (argc != 3) {
-		fprintf(stderr, "usage: compare_pictures TRUTH_DIR OTHER_DIR\n");
+	if ((argc != 3 && argc != 4) || (argc == 4 && sscanf(argv[3], "#%6x", &rgb) != 1)) {
+		fprintf(stderr, "usage: compare_pictures TRUTH_DIR OTHER_DIR [#RRGGBB]\n");
 		return 2;
 	}
+	for (int c = 0; c < 3 && argc == 4; c++)
+		background[c] = (float)(rgb >> (16 - 8 * c) & 255);
 	while (views < VIEWS_MAX) {
 		double ssim;
 
-		rc = compare_view(argv[1], argv[2], views, &psnr[views], &ssim);
+		rc = compare_view(argv[1], argv[2], views, argc == 4, &psnr[views], &ssim);
 		if (rc < 0)
 			break;
 		printf("{\"view\": %d, \"psnr_db\": %.3f, \"ssim\": %.5f}\n", views, psnr[views],
