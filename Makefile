@@ -163,7 +163,7 @@ ifeq ($(BOARD),raspberry-pi)
 	@bash tests/qemu/raspberry_pi.sh
 else
 	@bash tests/qemu/image.sh updates
-	@$(if $(filter arm64,$(ARCH)),,bash tests/qemu/kiosk.sh visit && bash tests/qemu/disks.sh all && bash tests/qemu/loader.sh all && bash tests/qemu/tpm.sh)
+	@$(if $(filter arm64,$(ARCH)),,bash tests/qemu/disks.sh all && bash tests/qemu/loader.sh all && bash tests/qemu/tpm.sh)
 endif
 
 qemu: all ## boot the image in QEMU to try it out: in a window, or on a VNC screen

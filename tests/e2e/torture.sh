@@ -5,13 +5,13 @@
 # whole or not there: after a failed build the next one makes the release that it would have made.
 #
 #   make torture            every n of every use
-#   SAMPLES=N               so many of each, spread over all (default 1; all: 0)
+#   SAMPLES=N               so many of each, spread over all (default 2; all: 0)
 #   USES="verify build"     of these alone
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 . tests/e2e/lib-content.sh
-work=build/e2e/torture samples=${SAMPLES:-1}
+work=build/e2e/torture samples=${SAMPLES:-2}
 rm -rf "$work"
 mkdir -p "$work/content"
 shim=$PWD/build/tests/tools/failing_calls.so content=build/gopura-content
