@@ -15,6 +15,7 @@
 #include "geometry/vec.h"
 #include "render/scene/scene_objects.h"
 #include "render/scene/scene_parts.h"
+#include "tests/silhouette.h"
 
 /* ---- clock: the linker wraps base/clock's in these (Makefile) */
 
@@ -419,21 +420,11 @@ uint8_t *stage_read(struct stage *stage)
 	return rgba;
 }
 
-/* By how much the background may differ in an image, which is compressed. */
-enum { GROUND_LEVELS = 8 };
-
 uint8_t *stage_read_panel(struct stage *stage)
 {
-	const uint8_t *ground = stage->scene->root.background;
 	uint8_t *rgba = read_target(stage);
 
-	for (size_t i = 0; i < pixel_count(stage); i++) {
-		bool is_ground = true;
-
-		for (int k = 0; k < 3; k++)
-			is_ground &= abs(rgba[4 * i + (size_t)k] - ground[k]) <= GROUND_LEVELS;
-		rgba[4 * i + 3] = is_ground ? 0 : 255;
-	}
+	silhouette_mark(rgba, pixel_count(stage), stage->scene->root.background);
 	return rgba;
 }
 

@@ -17,15 +17,11 @@
 #include <string.h>
 
 #include "format/picture.h"
+#include "tests/silhouette.h"
 
-enum {
-	VIEWS_MAX = 1000,
-	WINDOW = 8,
-	GROUND_LEVELS =
-		8, /* by how much a background may differ in an image, which is compressed */
-};
+enum { VIEWS_MAX = 1000, WINDOW = 8 };
 
-static float background[3] = { 96, 96, 96 };
+static uint8_t background[3] = { 96, 96, 96 };
 
 static int read_picture(struct picture *out, const char *folder, int view)
 {
@@ -53,18 +49,13 @@ static float over_background(const struct picture *picture, size_t at, int chann
 /* Makes of a picture with coverage what a panel shows, with the silhouette in its alpha. */
 static void show(struct picture *picture)
 {
-	for (size_t i = 0; i < (size_t)picture->width * picture->height; i++) {
-		uint8_t *pixel = picture->rgba + 4 * i, shown[4] = { 0 };
+	const size_t count = (size_t)picture->width * picture->height;
 
-		for (int c = 0; c < 3; c++) {
-			const float value = over_background(picture, i, c);
-
-			shown[c] = (uint8_t)(value + 0.5f);
-			if (fabsf(value - background[c]) > GROUND_LEVELS)
-				shown[3] = 255;
-		}
-		memcpy(pixel, shown, sizeof(shown));
-	}
+	for (size_t i = 0; i < count; i++)
+		for (int c = 0; c < 3; c++)
+			picture->rgba[4 * i + (size_t)c] =
+				(uint8_t)(over_background(picture, i, c) + 0.5f);
+	silhouette_mark(picture->rgba, count, background);
 }
 
 static bool is_covered(const struct picture *a, const struct picture *b, size_t at)
@@ -185,7 +176,7 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	for (int c = 0; c < 3 && argc == 4; c++)
-		background[c] = (float)(rgb >> (16 - 8 * c) & 255);
+		background[c] = (uint8_t)(rgb >> (16 - 8 * c));
 	while (views < VIEWS_MAX) {
 		double ssim;
 
