@@ -41,24 +41,20 @@ static struct diagnostic *get(struct diagnostics *diagnostics, uint32_t i)
 	return i == 0 ? &diagnostics->first : &diagnostics->more[i - 1];
 }
 
-/* Returns the next free element; NULL if the list is full or there is no memory. In a list of one
- * an error takes the place of a warning. */
-static struct diagnostic *append(struct diagnostics *diagnostics, int error)
+/* Returns the element for a new one: the next; where that is none, the last, if an error takes the
+ * place of a warning there; or NULL. */
+static struct diagnostic *place_for(struct diagnostics *diagnostics, int error)
 {
 	const uint32_t n = diagnostics->count;
 
-	if (n == 1 && diagnostics->max <= 1 && error < 0 && diagnostics->first.error == 0) {
-		diagnostics->dropped++;
-		return &diagnostics->first;
+	if (n == 0 ||
+	    (n < diagnostics->max && ARRAY_RESERVE(diagnostics->more, diagnostics->more_room, n,
+						   diagnostics->max - 1) == 0)) {
+		diagnostics->count++;
+		return get(diagnostics, n);
 	}
-	if (n > 0 &&
-	    (n >= diagnostics->max || ARRAY_RESERVE(diagnostics->more, diagnostics->more_room, n,
-						    diagnostics->max - 1) < 0)) {
-		diagnostics->dropped++;
-		return NULL;
-	}
-	diagnostics->count++;
-	return get(diagnostics, n);
+	diagnostics->dropped++;
+	return error < 0 && get(diagnostics, n - 1)->error == 0 ? get(diagnostics, n - 1) : NULL;
 }
 
 int diagnostics_add(struct diagnostics *diagnostics, int error, const char *file, unsigned line,
@@ -71,7 +67,7 @@ int diagnostics_add(struct diagnostics *diagnostics, int error, const char *file
 	if (!diagnostics)
 		return error;
 	diagnostics->error_count += error < 0;
-	added = append(diagnostics, error);
+	added = place_for(diagnostics, error);
 	if (!added)
 		return error;
 	added->error = error;

@@ -2,10 +2,11 @@
  * names the file, the place and the cure. Modules that read such files add to it; commands print it
  * and programs log it.
  *
- * A zeroed list keeps only the first error, or the first warning while there is none: that is the
- * cause of a failure, and what callers add on the way up are its consequences. The first one lies
- * in the list itself and needs no memory, so that even a lack of memory can be told; with max 0,
- * diagnostics_finish may be left out. One thread. */
+ * In a full list an error takes the place of a warning at its end. So a zeroed list keeps the first
+ * error, or the first warning while there is none: that is the cause of a failure, and what callers
+ * add on the way up are its consequences. The first one lies in the list itself and needs no
+ * memory, so that even a lack of memory can be told; with max 0, diagnostics_finish may be left
+ * out. One thread. */
 #ifndef GOPURA_BASE_DIAGNOSTICS_H
 #define GOPURA_BASE_DIAGNOSTICS_H
 

@@ -47,11 +47,11 @@ static void a_zeroed_list_keeps_the_cause_alone(void **state)
 
 static void an_error_is_the_cause_whatever_was_warned_of_before(void **state)
 {
-	struct diagnostics one = { 0 }, several = { .max = 4 };
+	struct diagnostics lists[] = { { .max = 0 }, { .max = 1 }, { .max = 4 } };
 
 	(void)state;
-	for (int i = 0; i < 2; i++) {
-		struct diagnostics *d = i == 0 ? &one : &several;
+	for (size_t i = 0; i < ARRAY_COUNT(lists); i++) {
+		struct diagnostics *d = &lists[i];
 
 		diagnostics_add(d, 0, "a.html", 3, "left out");
 		CHECK(strcmp(diagnostics_cause(d, -EIO), "a.html:3: left out") == 0);
@@ -61,6 +61,20 @@ static void an_error_is_the_cause_whatever_was_warned_of_before(void **state)
 		CHECK(diagnostics_total(d) == 3 && d->error_count == 2);
 		diagnostics_finish(d);
 	}
+}
+
+static void warnings_that_fill_a_list_leave_room_for_an_error(void **state)
+{
+	struct diagnostics d = { .max = 2 };
+
+	(void)state;
+	for (unsigned line = 1; line <= 3; line++)
+		diagnostics_add(&d, 0, "a.html", line, "left out");
+	diagnostics_add(&d, -EINVAL, "b.html", 0, "has no title");
+	diagnostics_add(&d, -EIO, NULL, 0, "no preview");
+	CHECK(strcmp(diagnostics_cause(&d, -EIO), "b.html: has no title") == 0);
+	CHECK(d.count == 2 && diagnostics_get(&d, 0)->line == 1 && diagnostics_total(&d) == 5);
+	diagnostics_finish(&d);
 }
 
 static void no_list_takes_nothing(void **state)
@@ -154,6 +168,7 @@ int main(void)
 		cmocka_unit_test(says_the_place_before_the_sentence),
 		cmocka_unit_test(a_zeroed_list_keeps_the_cause_alone),
 		cmocka_unit_test(an_error_is_the_cause_whatever_was_warned_of_before),
+		cmocka_unit_test(warnings_that_fill_a_list_leave_room_for_an_error),
 		cmocka_unit_test(no_list_takes_nothing),
 		cmocka_unit_test(counts_what_does_not_fit),
 		cmocka_unit_test(orders_by_lines_and_keeps_the_rest),
