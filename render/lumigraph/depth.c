@@ -96,8 +96,8 @@ static int build_programs(struct depth *depth)
 	return 0;
 }
 
-/* Makes a texture of depths and its framebuffer. *complete: whether it can be drawn into. */
-static int make_sheet_of(struct depth *depth, int at, int width_px, int height_px, bool *complete)
+/* Makes a texture of depths and its framebuffer. -ENOTSUP: the driver cannot draw into it. */
+static int make_sheet_of(struct depth *depth, int at, int width_px, int height_px)
 {
 	const struct gl_texture_options sheet = { .width_px = width_px,
 						  .height_px = height_px,
@@ -112,8 +112,9 @@ static int make_sheet_of(struct depth *depth, int at, int width_px, int height_p
 	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[at]);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
 			       depth->sheet[at], 0);
-	*complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-	return gl_check("making a sheet of depths");
+	const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+	rc = gl_check("making a sheet of depths");
+	return rc == 0 && !complete ? -ENOTSUP : rc;
 }
 
 static void drop_sheet(struct depth *depth, int at)
@@ -128,27 +129,25 @@ static int choose_format(struct depth *depth)
 {
 	static const GLenum formats[][2] = { { GL_RGB, GL_UNSIGNED_SHORT_5_6_5 },
 					     { GL_RGBA, GL_UNSIGNED_BYTE } };
-	bool complete = false;
-	int rc = 0;
-	for (size_t i = 0; i < ARRAY_COUNT(formats) && rc == 0 && !complete; i++) {
+	int rc = -ENOTSUP;
+	for (size_t i = 0; i < ARRAY_COUNT(formats) && rc == -ENOTSUP; i++) {
 		depth->format = formats[i][0];
 		depth->type = formats[i][1];
-		rc = make_sheet_of(depth, 0, 1, 1, &complete);
+		rc = make_sheet_of(depth, 0, 1, 1);
 		drop_sheet(depth, 0);
 	}
-	return rc < 0 || complete ? rc : -ENOTSUP;
+	return rc;
 }
 
 /* With the first face there, not at the start, like the atlas (tiles.c). */
 static int make_sheet(struct depth *depth, int at)
 {
 	const struct depth_layout *layout = &depth->layout;
-	bool complete = true;
-	int rc = depth->sheet[at] ? 0
-				  : make_sheet_of(depth, at, layout->across * layout->face_px,
-						  layout->rows * layout->face_px, &complete);
-	if (rc == 0 && !complete)
-		rc = -EIO;
+	int rc;
+	if (depth->sheet[at])
+		return 0;
+	rc = make_sheet_of(depth, at, layout->across * layout->face_px,
+			   layout->rows * layout->face_px);
 	if (rc < 0)
 		drop_sheet(depth, at);
 	return rc;
