@@ -439,7 +439,8 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		    tuf_follower_begin_first(&updater->tuf, release.tuf_root, source))
 			updater->options.ask(updater->options.data, &updater->tuf.ask);
 		else if (rc >= 0)
-			updater->said[0] = '\0';
+			updater->said[0] = '\0'; /* not above: it may be of that root, which is
+						     refused again in each round */
 		break;
 	}
 	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused))
