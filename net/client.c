@@ -56,7 +56,9 @@ struct net_client {
 	struct packets packets; /* fd is -1 while not connected */
 	/* EPOLLOUT is being watched */
 	bool waits_to_send;
-	bool is_stalled; /* the send queue is full because the fetcher does not read */
+	/* Why a message could not be sent, so that the connection is given up; 0: all were.
+	 * -ENOBUFS: the send queue is full because the fetcher does not read. */
+	int unsent;
 	/* Number of objects that may still arrive although nobody wants them. Each want that was
 	 * dropped or repeated on this connection counts one, because its object may already be on
 	 * its way. */
@@ -107,24 +109,28 @@ static void watch_socket(struct net_client *client)
 		client->waits_to_send = waits;
 }
 
+/* supervise disconnects later: this may run while a message is being handled. */
+static void give_up(struct net_client *client, int rc)
+{
+	client->unsent = rc;
+	set_timer(client, 1);
+}
+
 /* Sends a message. While not connected it does nothing, because send_all_state repeats the state
  * after connecting. A broken socket is detected when receiving. */
 static void send_message(struct net_client *client, const struct message *message)
 {
 	int rc;
 
-	if (client->packets.fd < 0 || client->is_stalled)
+	if (client->packets.fd < 0 || client->unsent < 0)
 		return;
 	if (client->packets.queued_bytes > QUEUE_BYTES_MAX) {
-		client->is_stalled = true;
-		/* supervise disconnects later; this function may run while a message is being
-		 * handled */
-		set_timer(client, 1);
+		give_up(client, -ENOBUFS);
 		return;
 	}
 	rc = packets_send(&client->packets, message, -1);
 	if (rc < 0 && rc != -EPIPE && rc != -ECONNRESET)
-		log_error("net", "a message to the fetcher could not be sent: %s", strerror(-rc));
+		give_up(client, rc);
 	watch_socket(client);
 }
 
@@ -171,14 +177,21 @@ static void send_all_state(struct net_client *client)
 	}
 }
 
+/* Takes fd. */
 static int adopt_socket(struct net_client *client, int fd)
 {
+	int rc;
+
 	packets_init(&client->packets, fd);
-	client->waits_to_send = client->is_stalled = false;
+	client->waits_to_send = false;
+	client->unsent = 0;
 	client->late_count = client->unwanted_count = 0;
 	client->connected_ms = client->received_ms = clock_now_ms();
 	set_timer(client, SILENT_MS);
-	return watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
+	rc = watch(client, fd, SOURCE_SOCKET, EPOLLIN, EPOLL_CTL_ADD);
+	if (rc < 0)
+		packets_finish(&client->packets);
+	return rc;
 }
 
 static int connect_to(struct net_client *client, const char *path)
@@ -335,8 +348,9 @@ static void supervise(struct net_client *client)
 {
 	int64_t silent_ms = clock_now_ms() - client->received_ms;
 
-	if (client->is_stalled) {
-		disconnect(client, "it does not read its messages");
+	if (client->unsent < 0) {
+		disconnect(client, client->unsent == -ENOBUFS ? "it does not read its messages"
+							      : strerror(-client->unsent));
 		return;
 	}
 	if (silent_ms < SILENT_MS) {

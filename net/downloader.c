@@ -39,6 +39,7 @@ enum {
 	FIRST_BYTES_PER_S = 1 << 20, /* assumed before the line was measured */
 	CACHE_READS_MAX = 64,        /* per call: other sources share the loop */
 	ITEMS_MAX = 1 << 20,         /* of one plan */
+	NO_MEMORY_MS = 1000,         /* until what failed without memory is tried again */
 };
 
 struct downloader {
@@ -86,19 +87,22 @@ static bool is_for_later(uint32_t priority)
 	return priority < MESSAGE_PRIORITY_PICTURE;
 }
 
-void downloader_want(struct downloader *downloader, const struct message_want *asked)
+int downloader_want(struct downloader *downloader, const struct message_want *asked)
 {
 	struct want *want = want_set_find(&downloader->wants, asked->hash);
+	int rc;
 
 	if (want) {
 		if (is_for_later(want->asked.priority) && !is_for_later(asked->priority))
 			downloader->plan_changed = true; /* no longer rate-limited */
 		want_set_change_priority(&downloader->wants, want, asked->priority);
-		return;
+		return 0;
 	}
-	if (want_set_add(&downloader->wants, asked) < 0)
-		downloader->options.events.missing(downloader->options.data, asked->hash,
-						   MISSING_OFFLINE);
+	rc = want_set_add(&downloader->wants, asked);
+	if (rc != -ENOSPC)
+		return rc;
+	downloader->options.events.missing(downloader->options.data, asked->hash, MISSING_OFFLINE);
+	return 0;
 }
 
 void downloader_drop(struct downloader *downloader, struct hash hash)
@@ -120,14 +124,18 @@ void downloader_keep(struct downloader *downloader, struct hash hash)
 		log_debug("net", "the cache is full of objects in use");
 }
 
-void downloader_use_release(struct downloader *downloader, struct hash root, bool also)
+int downloader_use_release(struct downloader *downloader, struct hash root, bool also)
 {
+	int rc;
+
 	if (!also)
 		downloader_clear(downloader);
-	if (locators_add(&downloader->locators, root) < 0)
-		return; /* the wants of this release are reported missing */
+	rc = locators_add(&downloader->locators, root);
+	if (rc < 0)
+		return rc;
 	if (!also && cache_use_release(downloader->options.cache, root) < 0)
 		log_warn("net", "the cache cannot store which release is in use");
+	return 0;
 }
 
 void downloader_clear(struct downloader *downloader)
@@ -223,6 +231,10 @@ static void on_failed(void *data, struct want *want, int rc)
 	downloader->plan_changed = true;
 	if (rc == -EHOSTUNREACH)
 		return;
+	if (rc == -ENOMEM) { /* ours, not the server's */
+		want->retry_at_ms = clock_now_ms() + NO_MEMORY_MS;
+		return;
+	}
 	want->failures++;
 	want->retry_at_ms = clock_now_ms() + link_pause_ms(want->failures);
 	report(downloader, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
@@ -399,6 +411,16 @@ static int add_items(struct downloader *downloader, size_t *count, struct range_
 	return rc;
 }
 
+/* For what memory was lacking for. */
+static void plan_again(struct downloader *downloader)
+{
+	const int64_t due_ms = clock_now_ms() + NO_MEMORY_MS;
+
+	log_warn("net", "out of memory for requests; they are tried again in a second");
+	if (due_ms < downloader->plan_due_ms)
+		downloader->plan_due_ms = due_ms;
+}
+
 /* Collects all wants that could be requested now into items, sorted by place. Returns their
  * count. */
 static size_t gather(struct downloader *downloader)
@@ -433,8 +455,10 @@ static size_t gather(struct downloader *downloader)
 		item.order = want->order;
 		item.want = want;
 		divide(downloader, want, item.size);
-		if (add_items(downloader, &count, item) < 0)
-			break; /* of no more memory; the others follow later */
+		if (add_items(downloader, &count, item) < 0) {
+			plan_again(downloader);
+			break;
+		}
 	}
 	range_sort(downloader->items, count);
 	return count;
@@ -524,6 +548,8 @@ static void request_ranges(struct downloader *downloader)
 		if (ranges_request(&downloader->ranges, &downloader->items[first], taken) == 0)
 			token_bucket_take(&downloader->rate_limit,
 					  later_bytes(&downloader->items[first], taken));
+		else
+			plan_again(downloader);
 	}
 }
 

@@ -52,10 +52,11 @@ must_check int downloader_create(struct downloader **out, const struct downloade
 void downloader_destroy(struct downloader *downloader);
 
 /* also false: this becomes the only release; all wants and other releases are dropped. also true:
- * it is added beside the others. */
-void downloader_use_release(struct downloader *downloader, struct hash root, bool also);
-/* *want is copied. If the object is already wanted, only its priority changes. */
-void downloader_want(struct downloader *downloader, const struct message_want *want);
+ * it is added beside the others. -ENOMEM: nothing of it can be found. */
+must_check int downloader_use_release(struct downloader *downloader, struct hash root, bool also);
+/* *want is copied. If the object is already wanted, only its priority changes. If there are too
+ * many wants, it is reported missing. -ENOMEM: it is not wanted. */
+must_check int downloader_want(struct downloader *downloader, const struct message_want *want);
 /* No event follows. A request that carries no other wanted object is cancelled. */
 void downloader_drop(struct downloader *downloader, struct hash hash);
 /* Asks the cache to evict this object last. */

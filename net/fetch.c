@@ -45,6 +45,7 @@ struct fetch {
 	const struct fetch_options *options;
 	int epoll_fd, listen_fd, signal_fd;
 	bool has_kiosk, kiosk_waits; /* kiosk_waits: EPOLLOUT is watched on its socket */
+	int unsent;                  /* why a message could not be sent to the kiosk; 0: all were */
 	bool ends;
 	struct packets kiosk;
 	struct http *http;
@@ -93,6 +94,7 @@ static int use_connection(struct fetch *fetch, int fd)
 	packets_init(&fetch->kiosk, fd);
 	fetch->has_kiosk = true;
 	fetch->kiosk_waits = false;
+	fetch->unsent = 0;
 	fetch->sent_status = (struct message_status){ 0 };
 	fetch->status_ms = 0;
 	return watch(fetch, fd, SOURCE_KIOSK, EPOLLIN, EPOLL_CTL_ADD);
@@ -117,8 +119,9 @@ static void send_to_kiosk(struct fetch *fetch, const struct message *message, in
 
 	if (rc == -EPIPE || rc == -ECONNRESET)
 		return; /* the next receive detects it */
+	/* work disconnects: this may run within another module's call */
 	if (rc < 0)
-		log_error("net", "a message could not be sent: %s", strerror(-rc));
+		fetch->unsent = rc;
 }
 
 /* ---- events from the other modules */
@@ -133,7 +136,7 @@ static void on_object(void *data, struct hash hash, struct bytes bytes)
 	if (bytes.size > MESSAGE_INLINE_MAX) {
 		passed = packets_seal(bytes);
 		if (passed < 0) {
-			log_error("net", "out of memory for an object: %s", strerror(-passed));
+			fetch->unsent = passed;
 			return;
 		}
 		message.object.bytes = (struct bytes){ NULL, 0 };
@@ -199,12 +202,10 @@ static int handle_message(struct fetch *fetch, const struct message *message)
 {
 	switch (message->kind) {
 	case MESSAGE_RELEASE:
-		downloader_use_release(fetch->downloader, message->release.root,
-				       message->release.also);
-		return 0;
+		return downloader_use_release(fetch->downloader, message->release.root,
+					      message->release.also);
 	case MESSAGE_WANT:
-		downloader_want(fetch->downloader, &message->want);
-		return 0;
+		return downloader_want(fetch->downloader, &message->want);
 	case MESSAGE_DROP:
 		downloader_drop(fetch->downloader, message->drop);
 		return 0;
@@ -367,6 +368,12 @@ static void work(struct fetch *fetch)
 		poll_work(fetch->poll);
 		asked_file_work(fetch->asked);
 		send_status(fetch);
+	}
+	/* The kiosk waits for what was lost. It connects again and repeats what it wants. */
+	if (fetch->has_kiosk && fetch->unsent < 0) {
+		log_error("net", "a message to the kiosk could not be sent: %s",
+			  strerror(-fetch->unsent));
+		disconnect_kiosk(fetch, "so that it asks again");
 	}
 	flush_cache(fetch);
 	waits = fetch->has_kiosk && packets_wait(&fetch->kiosk);

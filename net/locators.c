@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -98,7 +99,7 @@ static void note_failure(struct located_release *release, int rc, const char *wh
 	report_change(release->locators);
 	if (release->failures > 1)
 		return;
-	log_warn("net", "content bug: locator/%s: %s", hex, why);
+	log_warn("net", "%slocator/%s: %s", rc == -ENOMEM ? "" : "content bug: ", hex, why);
 	metrics_refusal_note(release->locators->options.link->refusal, hex, why);
 }
 
@@ -117,7 +118,10 @@ static void on_done(void *data, const struct http_result *result)
 	if (rc == 0)
 		rc = take_locator(release, buffer_bytes(&release->file));
 	if (rc < 0) {
-		note_failure(release, rc, rc == -EBADMSG ? "damaged" : result->why);
+		note_failure(release, rc,
+			     rc == -EBADMSG     ? "damaged"
+			     : rc == result->rc ? result->why
+						: strerror(-rc));
 	} else {
 		release->retry_at_ms = clock_now_ms() + SUSPECT_MS;
 		if (cache_put_file(options->cache, release->root, buffer_bytes(&release->file)) < 0)

@@ -115,7 +115,9 @@ static void on_done(void *data, const struct http_result *result)
 	const struct ranges_options *options = &range->ranges->options;
 	/* A successful answer that ended early (a truncated pack) lacks the objects we requested.
 	 */
-	int rc = result->rc == 0 ? -ENOENT : result->rc;
+	int rc = result->rc != 0            ? result->rc
+		 : range->object.error != 0 ? range->object.error
+					    : -ENOENT;
 
 	log_debug("net", "%llu bytes of a pack, priority %u, after %lld ms",
 		  (unsigned long long)range->bytes, range->priority,

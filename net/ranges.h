@@ -18,7 +18,7 @@ struct ranges_options {
 	void (*object)(void *data, struct want *want, uint32_t segment, struct hash hash,
 		       struct bytes bytes);
 	/* The range ended without this object; want has left it and waits. rc is that of
-	 * struct http_result; -ENOENT also if the answer was too short. */
+	 * struct http_result; -ENOENT also if the answer was too short, -ENOMEM. */
 	void (*failed)(void *data, struct want *want, int rc);
 	/* A range was answered in whole or in part, so there is room for another one. */
 	void (*ended)(void *data);

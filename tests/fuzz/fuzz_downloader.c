@@ -200,7 +200,8 @@ static void want(struct downloader *downloader, struct reader *in)
 	}
 	if ((n & 0xc0) == 0x40)
 		want.page = (struct hash){ { 0 } };
-	downloader_want(downloader, &want);
+	if (downloader_want(downloader, &want) < 0)
+		abort(); /* memory does not fail here */
 }
 
 static void event(struct downloader *downloader, struct reader *in)
@@ -209,9 +210,10 @@ static void event(struct downloader *downloader, struct reader *in)
 
 	switch (what % 10) {
 	case 0:
-		downloader_use_release(downloader,
-				       (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } },
-				       what & 0x80);
+		if (downloader_use_release(downloader,
+					   (struct hash){ { (uint8_t)(1 + what / 10 % ROOTS) } },
+					   what & 0x80) < 0)
+			abort();
 		break;
 	case 1:
 	case 2:

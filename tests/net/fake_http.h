@@ -29,6 +29,7 @@ static struct fake_server {
 	size_t cancelled;
 	int64_t now_ms;
 	bool is_giving; /* a receiver must not call into http */
+	bool is_full;   /* http_get has no memory */
 } server;
 
 int64_t clock_now_ms(void)
@@ -94,7 +95,7 @@ int http_get(struct http *http, const struct http_get *get, struct http_request 
 	(void)http;
 	assert(!server.is_giving);
 	*out = NULL;
-	if (server.count == ASKED_MAX)
+	if (server.count == ASKED_MAX || server.is_full)
 		return -ENOMEM;
 	server.count++;
 	*request = (struct http_request){ .get = *get, .open = true };

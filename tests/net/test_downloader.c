@@ -113,13 +113,13 @@ static void want(struct stage *stage, int n, uint32_t priority)
 					.size = OBJECT_BYTES,
 					.priority = priority };
 
-	downloader_want(stage->downloader, &message);
+	CHECK(downloader_want(stage->downloader, &message) == 0);
 }
 
 /* The release in use, its locator downloaded. */
 static void begin(struct stage *stage)
 {
-	downloader_use_release(stage->downloader, stage->root, false);
+	CHECK(downloader_use_release(stage->downloader, stage->root, false) == 0);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 1 && strncmp(asked(0)->path, "locator/07", 10) == 0);
 	give(asked(0), buffer_bytes(&stage->locator));
@@ -171,7 +171,7 @@ static void finds_in_the_cache_what_it_downloaded_before(void **state)
 	CHECK(metrics.from_cache == 1 && metrics.from_server == 1);
 	/* and the locator too: a start without the network */
 	downloader_clear(stage->downloader);
-	downloader_use_release(stage->downloader, stage->root, false);
+	CHECK(downloader_use_release(stage->downloader, stage->root, false) == 0);
 	want(stage, 5, 1000);
 	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/", 6) == 0);
@@ -211,13 +211,13 @@ static void asks_for_one_turn_at_once(void **state)
 					      .offset = n << 20,
 					      .size = 1 << 20 };
 
-		downloader_want(stage->downloader, &large);
+		CHECK(downloader_want(stage->downloader, &large) == 0);
 	}
 	downloader_work(stage->downloader);
 	CHECK(server.count == 1 + 4 && asked(0)->get.size == 128 << 10);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 1 + 4 && downloader_due_ms(stage->downloader) > server.now_ms);
-	downloader_want(stage->downloader, &page);
+	CHECK(downloader_want(stage->downloader, &page) == 0);
 	downloader_work(stage->downloader);
 	CHECK(server.count == 1 + 5 && asked(0)->get.size == 500);
 }
@@ -239,7 +239,7 @@ static struct hash want_in_segments(struct stage *stage)
 	CHECK(downloader_create(&stage->downloader, &options) == 0);
 	large.hash = hash_of((struct bytes){ stage->pack, sizeof(stage->pack) });
 	begin(stage);
-	downloader_want(stage->downloader, &large);
+	CHECK(downloader_want(stage->downloader, &large) == 0);
 	downloader_work(stage->downloader);
 	return large.hash;
 }
@@ -393,6 +393,24 @@ static void what_is_shown_has_no_rate(void **state)
 	downloader_work(stage->downloader);
 	answer_all(stage, &answered);
 	CHECK(downloader_wanted(stage->downloader) == 0);
+}
+
+static void tries_again_what_memory_was_lacking_for(void **state)
+{
+	struct stage *stage = *state;
+	size_t answered = 1;
+
+	begin(stage);
+	want(stage, 0, MESSAGE_PRIORITY_PICTURE);
+	server.is_full = true;
+	downloader_work(stage->downloader);
+	CHECK(server.count == 1);
+	CHECK(downloader_due_ms(stage->downloader) == server.now_ms + 1000);
+	server.is_full = false;
+	server.now_ms += 1000;
+	downloader_work(stage->downloader);
+	answer_all(stage, &answered);
+	CHECK(server.count == 2 && stage->objects == 1);
 }
 
 static void stops_when_the_kiosk_takes_no_more(void **state)
@@ -559,10 +577,10 @@ static void tells_what_the_release_does_not_have(void **state)
 				       .size = 10 };
 
 	begin(stage);
-	downloader_want(stage->downloader, &stray);
+	CHECK(downloader_want(stage->downloader, &stray) == 0);
 	downloader_work(stage->downloader);
 	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
-	downloader_want(stage->downloader, &beyond);
+	CHECK(downloader_want(stage->downloader, &beyond) == 0);
 	downloader_work(stage->downloader);
 	CHECK(stage->missing == 2);
 	CHECK(strncmp(asked(0)->path, "packs/", 6) != 0);
@@ -572,7 +590,7 @@ static void does_without_a_damaged_locator_until_it_is_repaired(void **state)
 {
 	struct stage *stage = *state;
 
-	downloader_use_release(stage->downloader, stage->root, false);
+	CHECK(downloader_use_release(stage->downloader, stage->root, false) == 0);
 	want(stage, 3, 1000);
 	downloader_work(stage->downloader);
 	stage->locator.data[20] ^= 1;
@@ -618,7 +636,7 @@ static void serves_two_releases_side_by_side(void **state)
 
 	begin(stage);
 	want(stage, 3, 1000);
-	downloader_use_release(stage->downloader, next, true);
+	CHECK(downloader_use_release(stage->downloader, next, true) == 0);
 	downloader_work(stage->downloader);
 	CHECK(downloader_wanted(stage->downloader) == 1);
 	CHECK(strncmp(server.asked[1].path, "locator/08", 10) == 0 ||
@@ -637,7 +655,7 @@ static void serves_two_releases_side_by_side(void **state)
 	want(stage, 9, 1000);
 	downloader_work(stage->downloader);
 	CHECK(strncmp(asked(0)->path, "packs/aa", 8) == 0);
-	downloader_use_release(stage->downloader, next, false);
+	CHECK(downloader_use_release(stage->downloader, next, false) == 0);
 	CHECK(downloader_wanted(stage->downloader) == 0);
 }
 
@@ -669,6 +687,7 @@ int main(void)
 		STAGED(cancels_all_segments_of_what_is_dropped),
 		STAGED(keeps_to_its_rate_with_what_is_for_later),
 		STAGED(what_is_shown_has_no_rate),
+		STAGED(tries_again_what_memory_was_lacking_for),
 		STAGED(stops_when_the_kiosk_takes_no_more),
 		STAGED(cancels_what_nobody_wants_any_more),
 		STAGED(keeps_what_was_dropped_while_it_came),
