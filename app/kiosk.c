@@ -569,39 +569,62 @@ static int start_metrics(struct kiosk *kiosk)
 	return vitals_offer(&kiosk->metrics, &kiosk->vitals, kiosk->options.metrics_path);
 }
 
-int kiosk_start(struct kiosk *kiosk)
+static int read_settings(struct kiosk *kiosk)
 {
-	int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
+	const int rc = provision_read(&kiosk->provision, &kiosk->options, &kiosk->profile);
 
 	folder_open_catalogues(kiosk->options.locale_dir);
 	kiosk->started_ms = clock_now_ms();
-	if (rc == 0)
-		rc = start_display(kiosk);
-	if (rc == 0)
-		rc = start_touch(kiosk);
-	if (rc == 0) {
-		connect_visit(kiosk);
-		connect_panel(kiosk);
-		rc = listening_init(&kiosk->listening,
-				    &(struct listening_env){ kiosk->actions.shown, &kiosk->redraw },
-				    (uint32_t)kiosk->options.loudness);
-	}
-	if (rc == 0)
-		rc = start_state(kiosk);
-	if (rc == 0)
-		rc = capture_create(&kiosk->capture, &kiosk->options, &kiosk->redraw);
-	if (rc == 0)
-		rc = start_metrics(kiosk);
-	if (rc == 0) {
-		kiosk->signal_fd = service_stop_fd();
-		rc = kiosk->signal_fd < 0 ? kiosk->signal_fd : 0;
-	}
-	if (rc == 0)
-		rc = start_loop(kiosk);
-	if (rc == 0) {
-		releases_start(&kiosk->releases);
-		rc = setup_page_show(&kiosk->setup_page, &kiosk->options, &kiosk->provision,
-				     kiosk->releases.sessions.shown.exhibit.scene);
+	return rc;
+}
+
+static int start_visit(struct kiosk *kiosk)
+{
+	const struct listening_env listening = { &kiosk->releases.sessions.shown.exhibit,
+						 &kiosk->redraw };
+
+	connect_visit(kiosk);
+	connect_panel(kiosk);
+	return listening_init(&kiosk->listening, &listening, (uint32_t)kiosk->options.loudness);
+}
+
+static int start_capture(struct kiosk *kiosk)
+{
+	return capture_create(&kiosk->capture, &kiosk->options, &kiosk->redraw);
+}
+
+static int start_signals(struct kiosk *kiosk)
+{
+	kiosk->signal_fd = service_stop_fd();
+	return kiosk->signal_fd < 0 ? kiosk->signal_fd : 0;
+}
+
+static int show_release(struct kiosk *kiosk)
+{
+	releases_start(&kiosk->releases);
+	return setup_page_show(&kiosk->setup_page, &kiosk->options, &kiosk->provision,
+			       kiosk->releases.sessions.shown.exhibit.scene);
+}
+
+int kiosk_start(struct kiosk *kiosk)
+{
+	static const struct {
+		const char *name;
+		int (*start)(struct kiosk *kiosk);
+	} parts[] = {
+		{ "settings", read_settings }, { "display", start_display },
+		{ "touch", start_touch },      { "visit", start_visit },
+		{ "state", start_state },      { "capture", start_capture },
+		{ "metrics", start_metrics },  { "signals", start_signals },
+		{ "loop", start_loop },        { "release", show_release },
+	};
+	int rc = 0;
+
+	for (size_t i = 0; i < ARRAY_COUNT(parts) && rc == 0; i++) {
+		rc = parts[i].start(kiosk);
+		if (rc < 0)
+			log_error("app", "the kiosk does not start: %s: %s", parts[i].name,
+				  strerror(-rc));
 	}
 	redraw_ask(&kiosk->redraw);
 	return rc;
