@@ -19,6 +19,7 @@ enum {
 	FORGETFUL_MS = 30000,  /* wait before a failed write is tried again */
 	HELD_MS = 60000,       /* interval of checking the time of day */
 	WHOLE_MOST_MS = 20000, /* longest wait before the first picture is synced */
+	AGAIN_MS = 1000,       /* wait before a release is opened again that could not be */
 };
 
 int sessions_init(struct sessions *sessions, const struct sessions_options *options)
@@ -201,8 +202,10 @@ void sessions_begin(struct sessions *sessions, struct hash root, uint32_t root_b
 	/* A release without its root page shows nothing, so it is replaced at once. */
 	const bool unseen = sessions->shown.root_here;
 	struct session *session = unseen ? &sessions->coming : &sessions->shown;
+	const bool again = sessions->again_ms > 0;
 	int rc;
 
+	sessions->again_ms = 0;
 	close_session(&sessions->coming);
 	if (sessions->shown.exhibit.scene && hash_equal(sessions->shown.exhibit.root, root))
 		return; /* the release that is on the panel */
@@ -211,8 +214,13 @@ void sessions_begin(struct sessions *sessions, struct hash root, uint32_t root_b
 	if (unseen)
 		net_client_add_release(sessions->options.net, root, root_bytes);
 	rc = open_session(sessions, session, root, root_bytes);
-	if (rc < 0)
-		log_error("app", "cannot open the release: %s", strerror(-rc));
+	if (rc < 0) {
+		if (!again) /* it may fail every second */
+			log_error("app", "cannot open the release: %s", strerror(-rc));
+		sessions->again_root = root;
+		sessions->again_bytes = root_bytes;
+		sessions->again_ms = clock_now_ms() + AGAIN_MS;
+	}
 	sessions->coming_since_ms = clock_now_ms();
 	sessions->coming_drawn_ms = 0;
 	if (unseen)
@@ -330,6 +338,8 @@ void sessions_warm(struct sessions *sessions)
 {
 	const int64_t now_ms = clock_now_ms();
 
+	if (sessions->again_ms > 0 && now_ms >= sessions->again_ms)
+		sessions_begin(sessions, sessions->again_root, sessions->again_bytes);
 	if (sessions->shown.root_here && !sessions->options.eye->ready) {
 		take_bounds(sessions);
 		updater_remember(sessions->options.updater, sessions->shown.exhibit.root);
@@ -359,6 +369,8 @@ int sessions_wait_ms(const struct sessions *sessions)
 	const int64_t now_ms = clock_now_ms();
 	int64_t due_ms = sessions->coming_since_ms + WARM_MOST_MS + 1;
 
+	if (sessions->again_ms > 0)
+		return sessions->again_ms > now_ms ? (int)(sessions->again_ms - now_ms) : 0;
 	if (sessions->coming_held)
 		return may_load(sessions) ? 0 : HELD_MS;
 	if (!sessions->coming.root_here)

@@ -48,6 +48,10 @@ struct sessions {
 	int64_t coming_since_ms, coming_drawn_ms;
 	bool coming_held;  /* its objects are not requested at this time of day */
 	bool coming_waits; /* draw it again after a time, not only when an object arrives */
+	/* A release that could not be opened, and when that is tried again; 0: none. */
+	struct hash again_root;
+	uint32_t again_bytes;
+	int64_t again_ms;
 	struct gl_target warm_target; /* the target it is drawn to */
 	int epoll_fd;                 /* holds the descriptors of the scenes; 0: not created */
 };
@@ -58,7 +62,8 @@ must_check int sessions_init(struct sessions *sessions, const struct sessions_op
 void sessions_finish(struct sessions *sessions);
 
 /* Begins to load the release; in the background if another one is shown. A release that was loading
- * before is dropped. If the release is already shown, it stays. */
+ * before is dropped. If the release is already shown, it stays. What cannot be opened, for want of
+ * memory, is tried again every second. */
 void sessions_begin(struct sessions *sessions, struct hash root, uint32_t root_bytes);
 /* Gives an object that arrived to both releases. The fetcher is to keep it in its cache if it is an
  * index page, or belongs to a first complete picture. */
