@@ -672,26 +672,27 @@ void net_client_add_release(struct net_client *client, struct hash root, uint32_
 	add_release(client, root, root_bytes, client->release_count > 0);
 }
 
-void net_client_want(struct net_client *client, const struct message_want *want)
+int net_client_want(struct net_client *client, const struct message_want *want)
 {
 	struct message message = { .kind = MESSAGE_WANT, .want = *want };
 	struct message_want *wanted = find_want(client, want->hash);
 
 	if (wanted && wanted->priority == want->priority)
-		return;
+		return 0;
 	if (wanted) /* the object may be on its way already, and will then arrive twice */
 		client->late_count++;
 	if (!wanted) {
 		wanted = calloc(1, sizeof(*wanted));
 		if (!wanted)
-			return; /* the kiosk will request it again */
+			return -ENOMEM;
 		if (map_set(&client->wants, hash_key(want->hash), (uintptr_t)wanted) < 0) {
 			free(wanted);
-			return;
+			return -ENOMEM;
 		}
 	}
 	*wanted = *want;
 	send_message(client, &message);
+	return 0;
 }
 
 void net_client_drop(struct net_client *client, struct hash hash)

@@ -67,7 +67,7 @@ void net_client_use_release(struct net_client *client, struct hash root, uint32_
 void net_client_add_release(struct net_client *client, struct hash root, uint32_t root_bytes);
 /* Requests an object; *want is copied. If the object is already wanted, only its priority changes.
  * The want is removed after the object event. Without memory the request is lost; ask again. */
-void net_client_want(struct net_client *client, const struct message_want *want);
+must_check int net_client_want(struct net_client *client, const struct message_want *want);
 /* Withdraws a request. Ignored if the object is not wanted. */
 void net_client_drop(struct net_client *client, struct hash hash);
 /* Asks the fetcher to write everything received so far durably; the synced event answers. The

@@ -95,15 +95,23 @@ static int open_session(struct sessions *sessions, struct session *session, stru
 	return rc;
 }
 
-static void open_root(struct session *session, struct hash hash, struct bytes object)
+/* Gives the root page to the scene, and its part about the texts to their view. */
+static void give_root(struct session *session, struct hash hash, struct bytes object)
 {
 	struct page page;
+	const int rc = page_decode(&page, object);
 
-	if (page_decode(&page, object) == 0) {
+	if (rc == -ENOMEM) {
+		log_warn("app", "out of memory for the root page; it is requested again");
+		return;
+	}
+	scene_give(session->exhibit.scene, hash, object);
+	if (rc == 0 && scene_root(session->exhibit.scene)) {
 		information_view_open(session->exhibit.view, hash, &page);
-		page_finish(&page);
 		session->root_here = true;
 	}
+	if (rc == 0)
+		page_finish(&page);
 }
 
 /* Returns true if the fetcher should keep the object. */
@@ -118,10 +126,10 @@ static bool give(struct session *session, struct hash hash, struct bytes object)
 	kept = page_is(object) || !session->was_settled;
 	if (kept && session->kept_count < SESSION_KEPT_MAX)
 		session->kept[session->kept_count++] = hash;
-	if (!information_view_give(exhibit->view, hash, object))
+	if (!session->root_here && hash_equal(hash, exhibit->root))
+		give_root(session, hash, object);
+	else if (!information_view_give(exhibit->view, hash, object))
 		scene_give(exhibit->scene, hash, object);
-	if (!session->root_here && hash_equal(hash, exhibit->root) && scene_root(exhibit->scene))
-		open_root(session, hash, object);
 	return kept;
 }
 
@@ -134,14 +142,15 @@ void sessions_give(struct sessions *sessions, struct hash hash, struct bytes obj
 		net_client_keep(sessions->options.net, hash);
 }
 
-static void add_wants(struct wants *wants, struct session *session)
+/* Returns false if memory was lacking for some. */
+static bool add_wants(struct wants *wants, struct session *session)
 {
 	static struct message_want list[WANTS_MAX];
 	bool awaits_image;
 	uint32_t count;
 
 	if (!session->exhibit.scene)
-		return;
+		return true;
 	awaits_image = scene_awaits_image(session->exhibit.scene);
 	count = information_view_wants(session->exhibit.view, list, WANTS_MAX);
 	for (uint32_t i = 0; i < count; i++)
@@ -150,6 +159,7 @@ static void add_wants(struct wants *wants, struct session *session)
 	count = (uint32_t)scene_wants(session->exhibit.scene, list, WANTS_MAX / 2);
 	for (uint32_t i = 0; i < count; i++)
 		wants_add(wants, &list[i]);
+	return !scene_lacked_memory(session->exhibit.scene);
 }
 
 /* Returns whether objects of the next release may be requested: it is the time of day for it, the
@@ -165,14 +175,16 @@ static bool may_load(const struct sessions *sessions)
 void sessions_ask(struct sessions *sessions)
 {
 	struct wants *wants = sessions->options.wants;
+	bool all;
 
 	wants_begin(wants);
-	add_wants(wants, &sessions->shown);
+	all = add_wants(wants, &sessions->shown);
 	sessions->coming_held = sessions->coming.exhibit.scene && !may_load(sessions);
 	wants_later(wants);
 	if (!sessions->coming_held)
-		add_wants(wants, &sessions->coming);
-	wants_say(wants);
+		all = add_wants(wants, &sessions->coming) && all;
+	if (!wants_say(wants) || !all)
+		redraw_ask(sessions->options.redraw);
 }
 
 /* ---- the release that is shown */

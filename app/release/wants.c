@@ -75,14 +75,16 @@ static bool priority_differs(uint32_t a, uint32_t b)
 	return high - low > low / 4;
 }
 
-void wants_say(struct wants *wants)
+bool wants_say(struct wants *wants)
 {
 	struct net_client *client = wants->client;
-	uint32_t a = 0, b = 0;
+	uint32_t a = 0, b = 0, kept = 0;
+	bool all;
 
 	tidy(wants);
 	while (a < wants->said_count || b < wants->next_count) {
 		struct message_want *said = &wants->said[a], *next = &wants->next[b];
+		int rc = 0;
 		int order = a == wants->said_count   ? 1
 			    : b == wants->next_count ? -1
 						     : by_hash(said, next);
@@ -91,19 +93,23 @@ void wants_say(struct wants *wants)
 			net_client_drop(client, said->hash);
 			a++;
 		} else if (order > 0) {
-			net_client_want(client, next);
+			rc = net_client_want(client, next);
 			b++;
 		} else {
 			if (priority_differs(said->priority, next->priority))
-				net_client_want(client, next);
+				rc = net_client_want(client, next);
 			else
 				next->priority = said->priority;
 			a++;
 			b++;
 		}
+		if (order >= 0 && rc == 0)
+			wants->next[kept++] = *next;
 	}
-	memcpy(wants->said, wants->next, wants->next_count * sizeof(wants->next[0]));
-	wants->said_count = wants->next_count;
+	all = kept == wants->next_count;
+	memcpy(wants->said, wants->next, kept * sizeof(wants->next[0]));
+	wants->said_count = kept;
+	return all;
 }
 
 void wants_arrived(struct wants *wants, struct hash hash)

@@ -30,8 +30,8 @@ void wants_add(struct wants *wants, const struct message_want *want);
  * their priorities are lowered below MESSAGE_PRIORITY_PICTURE and keep their order. */
 void wants_later(struct wants *wants);
 /* Sends the differences since the last turn to the fetcher: new objects, dropped ones, and clear
- * changes of priority. */
-void wants_say(struct wants *wants);
+ * changes of priority. Returns false if memory is lacking for some: say them in another turn. */
+must_check bool wants_say(struct wants *wants);
 /* Removes an object that arrived from the list of what the fetcher was told. */
 void wants_arrived(struct wants *wants, struct hash hash);
 /* Another release is shown: switches the fetcher to it. The fetcher forgets all wants, so the next

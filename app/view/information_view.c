@@ -157,8 +157,10 @@ static void decode_picture(struct information_view_picture *own, const char *nam
 {
 	const int rc = picture_decode_for_page(&own->decoded, object);
 
-	own->broken = rc < 0;
-	if (rc == -EFBIG)
+	own->broken = rc < 0 && rc != -ENOMEM; /* without memory it is wanted again */
+	if (rc == -ENOMEM)
+		log_warn("app", "out of memory for picture %s", name);
+	else if (rc == -EFBIG)
 		log_error("app", "content bug: picture %s is larger than %d px a side", name,
 			  PICTURE_PAGE_SIDE_MOST_PX);
 	else if (rc < 0)
@@ -289,14 +291,25 @@ _Static_assert((int)INFO_TOOL_LIGHT == (int)OVERLAY_TOOL_LIGHT &&
 		       (int)INFO_TOOL_WALK == (int)OVERLAY_TOOL_WALK,
 	       "one set of tools");
 
-static void give_database(struct information_view *view, struct bytes object)
+static void forget_database(struct information_view *view)
+{
+	overlay_destroy(view->overlay);
+	view->overlay = NULL;
+	info_close(view->info);
+	view->info = NULL;
+}
+
+/* -ENOMEM: as if it had not arrived. */
+static int give_database(struct information_view *view, struct bytes object)
 {
 	struct info *info;
 	int rc = info_open(&info, object);
 
 	if (rc < 0) {
-		log_error("app", "content bug: the release's information database is damaged");
-		return;
+		if (rc != -ENOMEM)
+			log_error("app",
+				  "content bug: the release's information database is damaged");
+		return rc;
 	}
 	info_close(view->info);
 	view->info = info;
@@ -312,28 +325,48 @@ static void give_database(struct information_view *view, struct bytes object)
 		if (rc == 0)
 			rc = tell_tours(view);
 	}
-	if (rc < 0)
+	if (rc == -ENOMEM)
+		forget_database(view);
+	else if (rc < 0)
 		log_error("app", "the texts over the model cannot be shown: %s", strerror(-rc));
+	return rc;
+}
+
+static int give_page(struct information_view *view, struct bytes object)
+{
+	int rc;
+
+	buffer_clear(&view->page_bytes);
+	buffer_put(&view->page_bytes, object.data, object.size);
+	rc = view->page_bytes.error;
+	if (rc == 0)
+		rc = page_decode(&view->page, buffer_bytes(&view->page_bytes));
+	if (rc == 0 && (view->page.kind != PAGE_INFO || view->page.child_count == 0)) {
+		page_finish(&view->page); /* another kind of page has no children for us */
+		rc = -EBADMSG;
+	}
+	if (rc < 0 && rc != -ENOMEM)
+		log_error("app", "content bug: the release's info page is damaged");
+	return rc;
+}
+
+/* Returns whether it is here, damaged or not: without memory it is wanted again. */
+static bool is_here(int rc)
+{
+	if (rc == -ENOMEM)
+		log_warn("app", "out of memory for the texts; they are requested again");
+	return rc != -ENOMEM;
 }
 
 bool information_view_give(struct information_view *view, struct hash hash, struct bytes object)
 {
 	if (hash_equal(hash, view->page_at.hash) && !view->page_here) {
-		view->page_here = true;
-		buffer_clear(&view->page_bytes);
-		buffer_put(&view->page_bytes, object.data, object.size);
-		if (view->page_bytes.error ||
-		    page_decode(&view->page, buffer_bytes(&view->page_bytes)) < 0 ||
-		    view->page.kind != PAGE_INFO || view->page.child_count == 0) {
-			log_error("app", "content bug: the release's info page is damaged");
-			page_finish(&view->page); /* another kind of page has no children for us */
-		}
+		view->page_here = is_here(give_page(view, object));
 		return true;
 	}
 	if (!view->database_here && view->page.child_count > 0 &&
 	    hash_equal(hash, view->page.children[0].hash)) {
-		view->database_here = true;
-		give_database(view, object);
+		view->database_here = is_here(give_database(view, object));
 		return true;
 	}
 	return give_spoken(view, hash, object) || give_picture(view, hash, object);

@@ -73,6 +73,8 @@ must_check int scene_dispatch(struct scene *scene);
 /* Writes what is wanted, most wanted first, at most `most` entries, and returns their number. What
  * is not listed any more is no longer wanted. Valid for the camera of the last scene_draw. */
 size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most);
+/* Returns whether memory was lacking for that list, or for the last picture: draw again. */
+bool scene_lacked_memory(const struct scene *scene);
 /* Returns whether the first image is still to come, for half a minute at most. What leads to it
  * gains little by itself, so what is large and not part of the picture should wait for it. */
 bool scene_awaits_image(const struct scene *scene);

@@ -464,6 +464,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
 	GLint framebuffer = 0;
 	*out = (struct scene_frame){ .image_share = -1 };
+	scene->wants_are_stale = scene->wants_are_stale || scene->lacked_memory;
+	scene->lacked_memory = false;
 	if (!scene->has_hierarchy && !scene->stream.growth.decoder) {
 		draw_nothing(camera);
 		scene->frame_us = clock_now_us();

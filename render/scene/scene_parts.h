@@ -197,6 +197,7 @@ struct scene {
 	uint32_t want_count, want_room;
 	bool groups_are_wanted;
 	bool wants_are_stale; /* objects arrived since they were listed */
+	bool lacked_memory;   /* for the last picture, or for what it wants */
 	uint32_t plan_cursor;
 	/* What the last frame marked: */
 	bool is_marked;

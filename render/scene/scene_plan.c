@@ -117,8 +117,10 @@ float scene_patch_error_m(const struct scene *scene, uint32_t patch)
 static bool add_visible(struct scene *scene, const struct visible_piece *piece)
 {
 	const uint32_t count = scene->visible_count + scene->leaving_count;
-	if (ARRAY_RESERVE(scene->visible, scene->visible_room, count + 1, UINT32_MAX) < 0)
+	if (ARRAY_RESERVE(scene->visible, scene->visible_room, count + 1, UINT32_MAX) < 0) {
+		scene->lacked_memory = true;
 		return false;
+	}
 	scene->visible[count] = *piece;
 	return true;
 }

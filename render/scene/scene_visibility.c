@@ -55,8 +55,10 @@ static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 static bool begin(struct scene *scene)
 {
 	if (ARRAY_RESERVE(scene->counted, scene->counted_room, scene->visible_count, UINT32_MAX) <
-	    0)
+	    0) {
+		scene->lacked_memory = true;
 		return false;
+	}
 	scene->counted_count = scene->visible_count < VISIBILITY_PIECES_MAX ? scene->visible_count
 									    : VISIBILITY_PIECES_MAX;
 	if (scene->counted_count > 0)

@@ -23,10 +23,13 @@ static void want(struct scene *scene, enum object_kind kind, uint64_t id,
 		 const struct message_want *place, uint32_t priority)
 {
 	const struct object *object = scene_expect(scene, place->hash, kind, id);
-	if (!object || object->state != OBJECT_WANTED)
+	if (object && object->state != OBJECT_WANTED)
 		return;
-	if (ARRAY_RESERVE(scene->wants, scene->want_room, scene->want_count + 1, UINT32_MAX) < 0)
+	if (!object ||
+	    ARRAY_RESERVE(scene->wants, scene->want_room, scene->want_count + 1, UINT32_MAX) < 0) {
+		scene->lacked_memory = true;
 		return;
+	}
 	struct message_want *out = &scene->wants[scene->want_count++];
 	*out = *place;
 	out->priority = priority;
@@ -190,6 +193,8 @@ static void want_labels(struct scene *scene)
 	uint8_t *asked = scene->labels ? calloc(scene->hierarchy.group_count, 1) : NULL;
 	if (!scene->labels)
 		want_child_of_root(scene, OBJECT_LABELS_PAGE, ROOT_CHILD_LABELS, LABELS_PRIORITY);
+	else if (!asked)
+		scene->lacked_memory = true;
 	for (uint32_t i = 0; asked && i < scene->visible_count; i++) {
 		const struct visible_piece *v = &scene->visible[i];
 		const struct piece_state *state =
@@ -216,6 +221,7 @@ struct gains {
 	struct gain *list; /* owned */
 	uint32_t count, room;
 	struct map of; /* id and kind -> index */
+	bool lacked_memory;
 };
 
 static void gain_add(struct gains *gains, enum object_kind kind, uint64_t id, float pixels)
@@ -229,6 +235,8 @@ static void gain_add(struct gains *gains, enum object_kind kind, uint64_t id, fl
 	if (ARRAY_RESERVE(gains->list, gains->room, gains->count + 1, UINT32_MAX) == 0 &&
 	    map_set(&gains->of, key, gains->count) == 0)
 		gains->list[gains->count++] = (struct gain){ id, pixels, kind };
+	else
+		gains->lacked_memory = true;
 }
 
 static int place_of(float at, int count)
@@ -356,6 +364,7 @@ static void add_pieces(const struct scene *scene, struct gains *gains)
 static bool want_gains(struct scene *scene, struct gains *gains, uint32_t base)
 {
 	bool any = false;
+	scene->lacked_memory = scene->lacked_memory || gains->lacked_memory;
 	for (uint32_t i = 0; i < gains->count; i++) {
 		struct message_want place;
 		if (!place_gain(scene, &gains->list[i], &place))
@@ -473,6 +482,11 @@ void scene_list_wants(struct scene *scene)
 	if (scene->want_count > 0)
 		qsort(scene->wants, scene->want_count, sizeof(*scene->wants), by_priority);
 	limit_to_room(scene);
+}
+
+bool scene_lacked_memory(const struct scene *scene)
+{
+	return scene->lacked_memory;
 }
 
 size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most)

@@ -174,7 +174,8 @@ static void ask(uint8_t what)
 		net_client_keep(client, want.hash);
 		break;
 	default:
-		net_client_want(client, &want);
+		if (net_client_want(client, &want) < 0)
+			abort(); /* memory does not fail here */
 		wanted[n] = true;
 	}
 }

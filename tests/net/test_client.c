@@ -255,12 +255,12 @@ static void delivers_what_is_wanted_once(void **state)
 	struct stage *stage = *state;
 	struct message_want want = want_of(material, 7);
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	CHECK(received(stage).want.priority == 7);
-	net_client_want(stage->client, &want); /* the same again: nothing new */
+	CHECK(net_client_want(stage->client, &want) == 0); /* the same again: nothing new */
 	CHECK(hears_nothing(stage));
 	want.priority = 9;
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	CHECK(received(stage).want.priority == 9);
 	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 1 && hash_equal(stage->last, want.hash));
@@ -280,7 +280,7 @@ static void passes_on_what_is_missing_and_meta_and_status(void **state)
 
 	tell(stage, missing, -1);
 	CHECK(stage->missing == 0); /* it was not wanted */
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	tell(stage, missing, -1);
 	CHECK(stage->missing == 1 && stage->reason == MISSING_NOT_FOUND);
 	tell(stage, object_of(material), -1); /* it came after all */
@@ -347,7 +347,7 @@ static void drops_and_forgets(void **state)
 
 	net_client_drop(stage->client, want.hash); /* was not wanted: not a word */
 	CHECK(hears_nothing(stage));
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	net_client_drop(stage->client, want.hash);
 	CHECK(received(stage).kind == MESSAGE_WANT);
 	CHECK(received(stage).kind == MESSAGE_DROP);
@@ -361,7 +361,7 @@ static void takes_large_objects_sealed(void **state)
 	struct message_want want = want_of(material, 7);
 	struct message message = object_of(material);
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	message.object.bytes = (struct bytes){ NULL, 0 };
 	tell(stage, message, packets_seal(of(material)));
 	CHECK(stage->objects == 1);
@@ -377,7 +377,7 @@ static void says_everything_again_after_the_fetcher_died(void **state)
 
 	net_client_use_release(stage->client, root, 100);
 	net_client_add_release(stage->client, next, 200);
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	net_client_keep(stage->client, keep);
 	tell(stage, status, -1);
 	reconnects(stage);
@@ -405,7 +405,7 @@ static void begins_anew_with_another_release(void **state)
 	struct hash root = { { 1 } }, next = { { 2 } };
 
 	net_client_use_release(stage->client, root, 100);
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	net_client_use_release(stage->client, root, 100); /* in use already */
 	CHECK(received(stage).kind == MESSAGE_RELEASE);
 	CHECK(received(stage).kind == MESSAGE_WANT);
@@ -425,7 +425,7 @@ static void leaves_a_fetcher_that_lies(void **state)
 	struct message_want want = want_of(material, 7);
 	struct message lie = object_of(brick);
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	CHECK(received(stage).kind == MESSAGE_WANT);
 	lie.object.hash = want.hash; /* these are not its bytes */
 	tell(stage, lie, -1);
@@ -453,7 +453,7 @@ static void is_not_held_up_by_a_socket_that_lingers(void **state)
 	struct message_want want = want_of(material, 7);
 	const struct message objects[] = { object_of(material), object_of(brick) };
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	for (size_t i = 0; i < ARRAY_COUNT(objects); i++) {
 		struct message message = objects[i];
 		int64_t began_ms;
@@ -480,7 +480,7 @@ static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 	struct message_want want = want_of(material, 7);
 	struct message message = object_of(brick);
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	CHECK(received(stage).kind == MESSAGE_WANT);
 	/* Never hashed, so nobody sees that it is a lie. */
 	message.object.bytes = of(material);
@@ -491,7 +491,7 @@ static void leaves_a_fetcher_that_sends_what_nobody_wants(void **state)
 	CHECK(stage->objects == 1);
 	tell(stage, message, -1);
 	comes_again(stage);
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	tell(stage, object_of(material), -1);
 	CHECK(stage->objects == 2);
 }
@@ -503,11 +503,11 @@ static void takes_what_was_on_its_way_for_no_crime(void **state)
 	struct message_want want = want_of(material, 7);
 
 	for (int i = 0; i < 500; i++) {
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 		net_client_drop(stage->client, want.hash);
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 		want.priority++;
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 		for (int sent = 0; sent < 3; sent++)
 			tell(stage, object_of(material), -1);
 	}
@@ -522,7 +522,7 @@ static void keeps_its_queue_to_a_fetcher_that_does_not_read_short(void **state)
 
 	for (int i = 0; i < 2000000; i++) { /* some 300 MB, all in all */
 		want.priority++;
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 	}
 	ring(stage);
 	comes_again(stage);
@@ -539,7 +539,7 @@ static void does_not_block_on_a_fetcher_that_hangs(void **state)
 
 		memcpy(want.hash.bytes, &n, sizeof(n));
 		want.hash.bytes[15] = 1;
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 	}
 	while (count < 20000) {
 		struct message message;
@@ -563,7 +563,7 @@ static void leaves_a_fetcher_that_says_nothing(void **state)
 	struct message message;
 	int passed;
 
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 	later_ms += 60000;
 	tell(stage, status, -1); /* a sign of life */
 	later_ms += 60000;
@@ -599,7 +599,7 @@ static void survives_a_fetcher_that_cannot_start(void **state)
 		struct net_client *client;
 
 		CHECK(net_client_create(&client, &options) == 0);
-		net_client_want(client, &want);
+		CHECK(net_client_want(client, &want) == 0);
 		for (int n = 0; n < 12; n++) {
 			struct pollfd ready = { .fd = net_client_fd(client), .events = POLLIN };
 

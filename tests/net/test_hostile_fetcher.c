@@ -258,7 +258,7 @@ static void want_something(struct stage *stage)
 					   .priority = random_below(stage, 4) };
 
 	stage->wanted[i] = true;
-	net_client_want(stage->client, &want);
+	CHECK(net_client_want(stage->client, &want) == 0);
 }
 
 static void live(struct stage *stage)
@@ -475,7 +475,7 @@ static void works_again(struct stage *stage)
 							     sizeof(stage->objects[i]) } };
 
 		stage->wanted[i] = true;
-		net_client_want(stage->client, &want);
+		CHECK(net_client_want(stage->client, &want) == 0);
 		send_message(stage, &message, -1);
 		dispatch(stage);
 	}

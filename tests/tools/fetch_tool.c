@@ -213,7 +213,7 @@ static void want_now(struct walk *walk, const struct message_want *message)
 		(struct pending){ message->hash, is_page, clock_now_ms() };
 	if (walk->keep_pages && is_page)
 		net_client_keep(walk->client, message->hash);
-	net_client_want(walk->client, message);
+	must(net_client_want(walk->client, message), "want");
 }
 
 static void want(struct walk *walk, struct hash page, const struct page_child *child,

@@ -1,5 +1,6 @@
 #include "app/release/wants.h"
 
+#include <errno.h>
 #include <string.h>
 
 #include "tests/check.h"
@@ -9,11 +10,14 @@ static uint32_t want_count, drop_count;
 static struct message_want last_want;
 static struct hash last_drop;
 
-void net_client_want(struct net_client *client, const struct message_want *want)
+static bool is_full; /* no memory for another want */
+
+int net_client_want(struct net_client *client, const struct message_want *want)
 {
 	(void)client;
 	want_count++;
 	last_want = *want;
+	return is_full ? -ENOMEM : 0;
 }
 
 void net_client_drop(struct net_client *client, struct hash hash)
@@ -46,7 +50,7 @@ static void turn(struct wants *wants, const struct message_want *list, uint32_t 
 	wants_begin(wants);
 	for (uint32_t i = 0; i < count; i++)
 		wants_add(wants, &list[i]);
-	wants_say(wants);
+	CHECK(wants_say(wants) != is_full);
 }
 
 static void says_only_what_changed(void **state)
@@ -69,6 +73,24 @@ static void says_only_what_changed(void **state)
 	turn(&wants, list, 2);
 	CHECK(want_count == 0 && drop_count == 1);
 	CHECK(hash_equal(last_drop, list[2].hash));
+}
+
+static void says_again_what_memory_was_lacking_for(void **state)
+{
+	static struct wants wants;
+	const struct message_want list[2] = { want_of(9, 100), want_of(3, 100) };
+
+	(void)state;
+	wants_init(&wants, NULL);
+	turn(&wants, list, 1);
+	is_full = true;
+	turn(&wants, list, 2);
+	CHECK(want_count == 1 && hash_equal(last_want.hash, list[1].hash));
+	is_full = false;
+	turn(&wants, list, 2);
+	CHECK(want_count == 1 && hash_equal(last_want.hash, list[1].hash));
+	turn(&wants, list, 2);
+	CHECK(want_count == 0 && drop_count == 0);
 }
 
 static void a_slow_drift_of_priority_is_said_in_the_end(void **state)
@@ -123,7 +145,7 @@ static void what_is_for_later_comes_after_all_that_is_shown(void **state)
 		wants_add(&wants, &tile);
 		wants_later(&wants);
 		wants_add(&wants, &root);
-		wants_say(&wants);
+		CHECK(wants_say(&wants));
 		CHECK(wants.said[0].priority < MESSAGE_PRIORITY_PICTURE);
 		CHECK(wants.said[1].priority == tile.priority);
 	}
@@ -132,7 +154,7 @@ static void what_is_for_later_comes_after_all_that_is_shown(void **state)
 	wants_later(&wants);
 	wants_add(&wants, &tile);
 	wants_add(&wants, &root);
-	wants_say(&wants);
+	CHECK(wants_say(&wants));
 	CHECK(wants.said_count == 2 && wants.said[1].priority == tile.priority);
 	turn(&wants, &root, 1);
 	CHECK(want_count == 1 && last_want.priority == root.priority); /* now it is shown */
@@ -140,7 +162,7 @@ static void what_is_for_later_comes_after_all_that_is_shown(void **state)
 	wants_later(&wants);
 	wants_add(&wants, &root);
 	wants_add(&wants, &tile);
-	wants_say(&wants);
+	CHECK(wants_say(&wants));
 	CHECK(wants.said[0].priority > wants.said[1].priority);
 }
 
@@ -159,7 +181,7 @@ static void more_than_fit_are_ignored(void **state)
 		want.hash.bytes[1] = (uint8_t)(i >> 8);
 		wants_add(&wants, &want);
 	}
-	wants_say(&wants);
+	CHECK(wants_say(&wants));
 	CHECK(want_count == WANTS_MAX);
 }
 
@@ -186,6 +208,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(says_only_what_changed),
+		cmocka_unit_test(says_again_what_memory_was_lacking_for),
 		cmocka_unit_test(a_slow_drift_of_priority_is_said_in_the_end),
 		cmocka_unit_test(an_object_that_came_is_neither_dropped_nor_said),
 		cmocka_unit_test(twice_wanted_counts_once_with_the_higher_priority),
