@@ -167,7 +167,9 @@ static void print_address(const struct site *site, const struct web_server_optio
 	if (options->host_count > 0 && web_server_port(running) > 0)
 		printf(":%d", web_server_port(running));
 	puts("; Ctrl-C ends");
-	fflush(stdout);
+	if (fflush(stdout) == EOF) /* nobody would know the port */
+		fprintf(stderr, "gopura-curator: the address could not be printed: %s; port %d\n",
+			strerror(errno), web_server_port(running));
 }
 
 /* Plain HTTP on a network shows passwords and cookies to whoever listens there. */
