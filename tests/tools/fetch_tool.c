@@ -12,6 +12,7 @@
  *     --cancel        drop every second object when a quarter has come
  *     --batch N       want N objects, then no more until they came and
  *     --pause-ms MS   so long passed: as a visitor does who looks, and goes on
+ *     --brief         ends with the last object, without waiting for the last figures
  *     --latencies FILE  from want to object, milliseconds, a line each
  *   prints one line of JSON; exit 0: all that was wanted came, 1: not. */
 #include <errno.h>
@@ -179,7 +180,7 @@ struct walk {
 	struct net_client *client;
 	struct hash root;
 	uint32_t every, most_s;
-	bool keep_pages, unseen, kill, cancel, killed, cancelled;
+	bool keep_pages, unseen, kill, cancel, killed, cancelled, brief;
 	struct pending *pending; /* what is to come */
 	size_t pending_count, pending_capacity;
 	struct message_want *later; /* of batches to come, first come first */
@@ -359,7 +360,8 @@ static int run_walk(struct walk *walk, uint32_t root_bytes)
 	}
 	took_ms = clock_now_ms() - began_ms;
 	/* The last figures come within a second of the last object. */
-	for (int64_t until_ms = clock_now_ms() + 1300; clock_now_ms() < until_ms;) {
+	for (int64_t until_ms = clock_now_ms() + (walk->brief ? 0 : 1300);
+	     clock_now_ms() < until_ms;) {
 		struct pollfd ready = { .fd = net_client_fd(walk->client), .events = POLLIN };
 
 		if (poll(&ready, 1, 100) > 0)
@@ -382,15 +384,25 @@ static int run_walk(struct walk *walk, uint32_t root_bytes)
 static int walk_main(int argc, char **argv)
 {
 	static const struct option long_options[] = {
-		{ "fetch", 1, NULL, 'f' },      { "release", 1, NULL, 'r' },
-		{ "cache", 1, NULL, 'c' },      { "root", 1, NULL, 'h' },
-		{ "bytes", 1, NULL, 'b' },      { "ca", 1, NULL, 'a' },
-		{ "budget", 1, NULL, 'B' },     { "socket", 1, NULL, 's' },
-		{ "every", 1, NULL, 'e' },      { "most-s", 1, NULL, 'm' },
-		{ "kill", 0, NULL, 'k' },       { "cancel", 0, NULL, 'C' },
-		{ "keep-pages", 0, NULL, 'K' }, { "unseen", 0, NULL, 'u' },
-		{ "batch", 1, NULL, 'n' },      { "pause-ms", 1, NULL, 'p' },
-		{ "latencies", 1, NULL, 'l' },  { 0 },
+		{ "fetch", 1, NULL, 'f' },
+		{ "release", 1, NULL, 'r' },
+		{ "cache", 1, NULL, 'c' },
+		{ "root", 1, NULL, 'h' },
+		{ "bytes", 1, NULL, 'b' },
+		{ "ca", 1, NULL, 'a' },
+		{ "budget", 1, NULL, 'B' },
+		{ "socket", 1, NULL, 's' },
+		{ "every", 1, NULL, 'e' },
+		{ "most-s", 1, NULL, 'm' },
+		{ "kill", 0, NULL, 'k' },
+		{ "cancel", 0, NULL, 'C' },
+		{ "keep-pages", 0, NULL, 'K' },
+		{ "unseen", 0, NULL, 'u' },
+		{ "batch", 1, NULL, 'n' },
+		{ "pause-ms", 1, NULL, 'p' },
+		{ "latencies", 1, NULL, 'l' },
+		{ "brief", 0, NULL, 'i' },
+		{ 0 },
 	};
 	struct walk walk = { .every = 1, .most_s = 30 };
 	struct net_client_options options = {
@@ -450,6 +462,9 @@ static int walk_main(int argc, char **argv)
 			break;
 		case 'p':
 			walk.pause_ms = (int64_t)strtoul(optarg, NULL, 10);
+			break;
+		case 'i':
+			walk.brief = true;
 			break;
 		case 'l':
 			walk.latencies = fopen(optarg, "w");

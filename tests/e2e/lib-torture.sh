@@ -1,0 +1,100 @@
+# The uses of the programs that run on, for torture.sh, which sources this:
+#
+#   fetch    from an empty cache it brings a release from nginx for a client, and ends with it
+#   health   it is started by a request, answers each of its pages, and ends when idle (torture_health.py)
+#   curator  it starts, ana signs in, opens a page, saves a page and a text, it ends (torture_curator.py)
+#   kiosk    it starts with a release and a fetcher of its own, and ends when the picture is complete
+#   touch    the same, and fingers open a part's card and page
+
+visits="fetch health curator kiosk touch" visit=$work/visit metrics_pid=
+
+is_visit() { [[ " $visits " = *" $1 "* ]]; }
+is_slow_visit() { [ "$1" = kiosk ] || [ "$1" = touch ]; }
+
+# What all visits need, made before the first.
+begin_visits() {
+	[ ! -e "$work/views.txt" ] || return 0
+	echo '46.7 -55.7 32.6  0 0 9  45' >"$work/views.txt"
+	cat >"$work/page.touch" <<-'END'
+		2500 down 0 600 124
+		2550 up 0 600 124
+		3700 down 0 320 300
+		3750 up 0 320 300
+		5000 down 0 2 2
+		5050 up 0 2 2
+	END
+	read -r root root_bytes < <(python3 - "$work/reference/release.json" <<-'P'
+		import base64, json, sys
+		release = json.loads(base64.b64decode(json.load(open(sys.argv[1]))["payload"]))
+		print(release["root"], release["root_bytes"])
+	P
+	)
+	cp -a "$work/content" "$work/project"
+	echo 'password of ana' | build/gopura-curator user add "$work/project" ana >"$work/log" 2>&1 || { cat "$work/log"; fail user; }
+	printf 'day,minutes\n2026-11-28,1\n' >"$work/visits.csv"
+	serve "$work/reference" "$work/server"
+	build/gopura-fetch --release "$work/reference" --cache "$work/metrics.db" --socket "$work/metrics.socket" \
+		--metrics "$work/metrics" >"$work/metrics.log" 2>&1 &
+	metrics_pid=$!
+	wait_for 20 "metrics" test -S "$work/metrics"
+}
+end_visits() { [ -z "$metrics_pid" ] || kill "$metrics_pid"; }
+
+prepare_visit() {
+	begin_visits
+	rm -rf "$visit" "$work/once" "$work/left"
+	mkdir "$visit"
+	[ "$1" != curator ] || cp -a "$work/project" "$visit/content"
+}
+
+# use_visit NAME SETTING...: see use in torture.sh
+use_visit() {
+	local name=$1 program=gopura-$1 command
+	shift
+	local kiosk=(build/gopura-kiosk --display headless --size 640x360 --release "$work/reference"
+		--trust "$work/reference/root/1.json" --state "$visit/state" --visits "$visit/visits.csv" --metrics "$visit/metrics"
+		--log debug)
+	case $name in
+	fetch) command=(build/tests/tools/fetch_tool walk --brief --fetch build/gopura-fetch --release "$url" --ca "$ca"
+		--cache "$visit/cache.db" --root "$root" --bytes "$root_bytes" --most-s 20) ;;
+	health) command=(python3 tests/e2e/torture_health.py "$visit" build/gopura-health --kiosk "$visit/none"
+		--fetch "$work/metrics" --faults "$visit/faults" --data "$work" --visits "$work/visits.csv") ;;
+	curator) command=(python3 tests/e2e/torture_curator.py "$visit" build/gopura-curator "$visit/content") ;;
+	kiosk) command=("${kiosk[@]}" --views "$work/views.txt" --capture "$visit") ;;
+	touch) program=gopura-kiosk command=("${kiosk[@]}" --touch-replay "$work/page.touch" --quit-after-replay) ;;
+	esac
+	timeout -k 5 120 env FAIL_PROGRAM=$program FAIL_ONCE="$work/once" FAIL_LEFT="$work/left" "$@" LD_PRELOAD="$shim" \
+		"${command[@]}" >"$work/said" 2>&1
+}
+
+# Whether the use's result is there, after a use that ended with 0.
+is_done() {
+	case $1 in
+	fetch) grep -q '"damaged":0' "$work/said" ;;
+	kiosk) grep -q '"settled": true' "$visit/views.jsonl" ;;
+	touch) grep -q 'app: page of' "$work/said" ;;
+	esac
+}
+has_said() { grep -qE '^(error|warn): |^gopura-' "$work/said"; }
+
+# check_visit NAME STATUS WHAT: after a use with a failing call
+check_visit() {
+	local name=$1 status=$2 what=$3
+	if ! is_slow_visit "$name"; then
+		[ "$status" = 0 ] && is_done "$name" || fault "$what: it does not work again"
+	elif [ "$status" != 0 ]; then
+		has_said || fault "$what: it ended without a word"
+	elif ! is_done "$name"; then
+		has_said || fault "$what: its result is not there, and nothing was said"
+	fi
+	! grep -q '^crashed' "$work/once" 2>/dev/null || fault "$what: it crashed"
+	[ ! -s "$work/left" ] || { cp "$work/left" "$work/said"; fault "$what: it leaves memory or descriptors"; }
+	if [ "$name" = curator ]; then
+		! command -v git >/dev/null || git --git-dir="$visit/content/.curator/history.git" fsck --strict >"$work/said" 2>&1 ||
+			fault "$what: the history is damaged"
+		[ -z "$(find "$visit/content" -name '*.tmp*' -o -name '*broken*')" ] || fault "$what: it leaves files"
+	elif [ "$name" != health ]; then
+		use_visit "$name" FAIL_KIND=none && is_done "$name" || fault "$what: the next one does not work"
+		[ -z "$(find "$visit" -name '*.broken*')" ] || fault "$what: the next one sets a file aside as damaged"
+	fi
+}
