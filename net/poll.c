@@ -156,7 +156,7 @@ static bool on_piece(void *data, struct bytes piece)
 	return !poll->body.error;
 }
 
-/* Stores the body of an answer, and passes on what changed, except a release (on_done). */
+/* Stores the body of an answer, and passes on a new root. */
 static void take_body(struct poll *poll, const char *etag)
 {
 	struct known *known = known_of_stage(poll);
@@ -167,16 +167,16 @@ static void take_body(struct poll *poll, const char *etag)
 	 * received. */
 	if (poll->stage != STAGE_ROOT && !is_tuf(poll))
 		snprintf(known->etag, sizeof(known->etag), "%s", etag);
-	if ((same && !is_tuf(poll)) || poll->body.size == 0)
+	if (same || poll->body.size == 0)
 		return;
 	buffer_clear(&known->file);
 	buffer_put(&known->file, poll->body.data, poll->body.size);
+	if (known->file.error)
+		known->etag[0] = '\0'; /* "not modified" would leave us without it */
 	if (poll->stage == STAGE_ROOT) {
 		poll->stage = STAGE_VERDICT;
 		poll->verdict_ms = clock_now_ms() + VERDICT_MS;
 		pass_on(poll, META_ROOT, poll->root_version + 1, known);
-	} else if (poll->stage == STAGE_TIMESTAMP) {
-		pass_on(poll, META_TIMESTAMP, 0, known);
 	}
 }
 
@@ -227,6 +227,9 @@ static void on_done(void *data, const struct http_result *result)
 			     "larger than the limit for such a file");
 	else if (rc < 0 && poll->stage != STAGE_ROOT) /* usually there is no newer root */
 		note_refusal(poll, path_of_stage(poll, path), result->why);
+	/* Passed on in every round, as a release: the kiosk may have had no memory for it. */
+	if (rc == 0 && poll->stage == STAGE_TIMESTAMP)
+		pass_on(poll, META_TIMESTAMP, 0, &poll->timestamp);
 	if (poll->stage == STAGE_RELEASE) {
 		/* Passed on in every round, because what was missing may be there by now: the
 		 * timestamp that names this release, or the root of The Update Framework that it

@@ -287,9 +287,12 @@ static int take_root(struct updater *updater, struct bytes bytes, const char **w
 	return 0;
 }
 
-/* Counts a refusal, and logs it unless it is the one that was logged last. */
-static void refuse(struct updater *updater, const char *name, const char *why)
+/* Counts a refusal, and logs it unless it is the one that was logged last. why: "" if rc says it.
+ */
+static void refuse(struct updater *updater, const char *name, int rc, const char *why)
 {
+	if (*why == '\0')
+		why = strerror(-rc);
 	if (strncmp(why, updater->said, sizeof(updater->said) - 1) != 0)
 		log_warn("app", "refused %s: %s", name, why);
 	snprintf(updater->said, sizeof(updater->said), "%s", why);
@@ -356,7 +359,7 @@ static void follow_tuf(struct updater *updater, enum meta_source source)
 			begin_next(updater, &release, buffer_bytes(&file), source);
 	}
 	if (rc < 0)
-		refuse(updater, name, why);
+		refuse(updater, name, rc, why);
 	else
 		updater->said[0] = '\0';
 	buffer_finish(&file);
@@ -379,7 +382,7 @@ static void go_over(struct updater *updater, const struct message_file *file)
 		updater->options.ask(updater->options.data, &tuf->ask);
 	} else if (rc != -ENOKEY) {
 		snprintf(name, sizeof(name), "tuf/%.32s", file->name);
-		refuse(updater, name, tuf->why);
+		refuse(updater, name, rc, tuf->why);
 	}
 }
 
@@ -444,7 +447,7 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 		break;
 	}
 	if (rc < 0 && !(role == META_RELEASE && updater->stamp_refused))
-		refuse(updater, name, why);
+		refuse(updater, name, rc, why);
 	if (role == META_TIMESTAMP)
 		updater->stamp_refused = rc < 0;
 }
