@@ -250,11 +250,12 @@ int cache_keep(struct cache *cache, struct hash hash)
 
 static bool is_fact(struct cache *cache, const char *name, const char *value)
 {
+	sqlite3_int64 count;
 	char sql[128];
 
 	snprintf(sql, sizeof(sql), "SELECT count(*) FROM facts WHERE name = '%s' AND value = '%s'",
 		 name, value);
-	return db_integer(cache->db, sql) == 1;
+	return db_integer(cache->db, sql, &count) == 0 && count == 1;
 }
 
 int cache_use_release(struct cache *cache, struct hash root)
@@ -353,6 +354,7 @@ uint64_t cache_refused_writes(const struct cache *cache)
 
 void cache_figures(struct cache *cache, struct cache_figures *out)
 {
+	sqlite3_int64 objects, bytes;
 	int64_t kept;
 
 	*out = cache->figures;
@@ -362,7 +364,8 @@ void cache_figures(struct cache *cache, struct cache_figures *out)
 		return;
 	kept = cache_integer(cache, STATEMENT_KEPT_BYTES);
 	out->kept_bytes = kept > 0 ? (uint64_t)kept : 0;
-	out->objects = (uint64_t)db_integer(cache->db, "SELECT count(*) FROM objects");
-	out->object_bytes =
-		(uint64_t)db_integer(cache->db, "SELECT ifnull(sum(size), 0) FROM objects");
+	if (db_integer(cache->db, "SELECT count(*) FROM objects", &objects) == 0)
+		out->objects = (uint64_t)objects;
+	if (db_integer(cache->db, "SELECT ifnull(sum(size), 0) FROM objects", &bytes) == 0)
+		out->object_bytes = (uint64_t)bytes;
 }

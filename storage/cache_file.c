@@ -92,17 +92,21 @@ static int on_log(void *data, sqlite3 *db, const char *name, int pages)
 }
 
 /* Creates the schema in an empty file. A file of another kind or version is treated as damaged:
- * nothing in it is needed. */
+ * nothing in it is needed. A file that cannot be read just now is not. */
 static int check_schema(struct cache *cache)
 {
-	sqlite3_int64 version = db_integer(cache->db, "PRAGMA user_version");
+	sqlite3_int64 version, tables;
 	char sql[64];
-	int rc;
+	int rc = db_integer(cache->db, "PRAGMA user_version", &version);
 
-	if (version == SCHEMA_VERSION)
+	if (rc == 0 && version == SCHEMA_VERSION)
 		return 0;
-	if (version < 0 || db_integer(cache->db, "SELECT count(*) FROM sqlite_schema") != 0)
-		return -EBADMSG;
+	if (rc == 0)
+		rc = db_integer(cache->db, "SELECT count(*) FROM sqlite_schema", &tables);
+	if (rc == 0 && (version < 0 || tables != 0))
+		rc = -EBADMSG;
+	if (rc < 0)
+		return rc;
 	rc = db_exec(cache->db, "BEGIN IMMEDIATE");
 	if (rc == 0)
 		rc = db_exec(cache->db, schema);
@@ -146,7 +150,7 @@ static int prepare_all(struct cache *cache)
 static int open_db(struct cache *cache)
 {
 	int rc = db_open(&cache->db, cache->path);
-	sqlite3_int64 tick;
+	sqlite3_int64 tick = 0;
 
 	if (rc == 0)
 		rc = cache_set_pragmas(cache);
@@ -154,6 +158,10 @@ static int open_db(struct cache *cache)
 		rc = check_schema(cache);
 	if (rc == 0)
 		rc = prepare_all(cache);
+	if (rc == 0) {
+		rc = db_integer(cache->db, "SELECT value FROM facts WHERE name = 'tick'", &tick);
+		rc = rc == -ENOENT ? 0 : rc;
+	}
 	/* Read-only although the file is writable: its header claims a format of the future. */
 	if (rc == -EROFS && access(cache->path, W_OK) == 0)
 		rc = -EBADMSG;
@@ -162,7 +170,6 @@ static int open_db(struct cache *cache)
 		cache_close(cache);
 		return rc;
 	}
-	tick = db_integer(cache->db, "SELECT value FROM facts WHERE name = 'tick'");
 	cache->first_tick = tick > 0 ? tick : 0;
 	cache->opened_ms = clock_now_ms();
 	sqlite3_wal_checkpoint_v2(cache->db, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);

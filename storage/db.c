@@ -79,16 +79,18 @@ int db_run(sqlite3_stmt *statement)
 	return db_code(code);
 }
 
-sqlite3_int64 db_integer(sqlite3 *db, const char *sql)
+int db_integer(sqlite3 *db, const char *sql, sqlite3_int64 *out)
 {
 	sqlite3_stmt *statement = NULL;
-	sqlite3_int64 value = -1;
+	int code = sqlite3_prepare_v2(db, sql, -1, &statement, NULL);
 
-	if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) == SQLITE_OK &&
-	    sqlite3_step(statement) == SQLITE_ROW)
-		value = sqlite3_column_int64(statement, 0);
+	*out = -1;
+	if (code == SQLITE_OK)
+		code = sqlite3_step(statement);
+	if (code == SQLITE_ROW)
+		*out = sqlite3_column_int64(statement, 0);
 	sqlite3_finalize(statement);
-	return value;
+	return code == SQLITE_ROW ? 0 : code == SQLITE_DONE ? -ENOENT : db_code(code);
 }
 
 int db_set_aside(const char *path, long most_bytes)

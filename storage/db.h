@@ -22,8 +22,8 @@ must_check int db_open(sqlite3 **out, const char *path);
 must_check int db_exec(sqlite3 *db, const char *sql);
 /* Steps a statement that gives no rows, and resets it. Does not log. */
 must_check int db_run(sqlite3_stmt *statement);
-/* Returns the single integer that sql gives; -1 on failure or without a row. */
-sqlite3_int64 db_integer(sqlite3 *db, const char *sql);
+/* Gives the single integer of sql; -1 on failure. -ENOENT: there is no row. Does not log. */
+int db_integer(sqlite3 *db, const char *sql, sqlite3_int64 *out);
 
 /* Renames path to path.broken (replacing an earlier one) and cuts it to most_bytes, so that a
  * damaged cache does not take a second budget. Removes its -wal, -shm and -journal. The database

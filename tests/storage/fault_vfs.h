@@ -1,6 +1,7 @@
 /* A SQLite file system that fails on demand: it lies over the real one and becomes the default.
  * Every write, truncation and sync counts; from the chosen one on they fail, as on a full disk, as
- * on a dying one, or as at a power cut (that write is torn in half, and no later one happens). */
+ * on a dying one, or as at a power cut (that write is torn in half, and no later one happens). Or
+ * it is reads that fail. */
 #ifndef GOPURA_TESTS_FAULT_VFS_H
 #define GOPURA_TESTS_FAULT_VFS_H
 
@@ -8,13 +9,14 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum fault_kind { FAULT_NONE, FAULT_FULL, FAULT_IO, FAULT_POWER_CUT };
+enum fault_kind { FAULT_NONE, FAULT_FULL, FAULT_IO, FAULT_POWER_CUT, FAULT_READ };
 
 static struct fault {
 	enum fault_kind kind;
 	long at;    /* the write that fails first, from 0 */
 	long count; /* writes that fail; 0: all later ones too */
 	long writes;
+	long reads; /* with FAULT_READ it is these that fail, and no write */
 } fault;
 
 struct fault_file {
@@ -30,7 +32,7 @@ static bool fault_strikes(bool *first)
 	long n = fault.writes++;
 
 	*first = n == fault.at;
-	if (fault.kind == FAULT_NONE || n < fault.at)
+	if (fault.kind == FAULT_NONE || fault.kind == FAULT_READ || n < fault.at)
 		return false;
 	return fault.count == 0 || n < fault.at + fault.count;
 }
@@ -52,6 +54,10 @@ static int fault_close(sqlite3_file *file)
 
 static int fault_read(sqlite3_file *file, void *to, int size, sqlite3_int64 at)
 {
+	const long n = fault.reads++;
+
+	if (fault.kind == FAULT_READ && n >= fault.at && n < fault.at + fault.count)
+		return SQLITE_IOERR_READ;
 	return fault_real(file)->pMethods->xRead(fault_real(file), to, size, at);
 }
 

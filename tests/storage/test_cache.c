@@ -533,6 +533,28 @@ static void goes_on_after_any_write_failed(void **state)
 	}
 }
 
+static void takes_no_failed_read_for_damage(void **state)
+{
+	struct cache *cache = open_cache(8 << 20);
+	long reads;
+
+	(void)state;
+	CHECK(put(cache, 1, 20000, 0) == 0);
+	cache_destroy(cache);
+	fault_set(FAULT_NONE, 0, 0);
+	cache_destroy(open_cache(8 << 20));
+	reads = fault.reads;
+	CHECK(reads > 3);
+	for (long at = 0; at < reads; at++) {
+		fault_set(FAULT_READ, at, 1);
+		cache = open_cache(8 << 20);
+		fault_set(FAULT_NONE, 0, 0);
+		now_ms += 600000; /* it tries again */
+		CHECK(get(cache, 1, 20000) == 0 && !exists(".broken"));
+		cache_destroy(cache);
+	}
+}
+
 static void tolerates_a_disk_that_stays_full(void **state)
 {
 	struct cache *cache = open_cache(8 << 20);
@@ -589,6 +611,7 @@ int main(void)
 		IN_A_FOLDER(survives_every_kind_of_truncated_file),
 		IN_A_FOLDER(survives_flipped_bits),
 		IN_A_FOLDER(goes_on_after_any_write_failed),
+		IN_A_FOLDER(takes_no_failed_read_for_damage),
 		IN_A_FOLDER(tolerates_a_disk_that_stays_full),
 		IN_A_FOLDER(lives_without_a_file),
 	};
