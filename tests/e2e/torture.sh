@@ -114,6 +114,9 @@ for name in ${USES:-keys exchange export temple inspect verify import publish se
 	all "$name" io 28 # ENOSPC
 	all "$name" io 4  # EINTR
 	all "$name" short 0
+	is_visit "$name" || continue
+	all "$name" database 5
+	all "$name" database 28
 done
 echo "$runs runs, $survived went on without what failed, $faults faults"
 [ "$faults" = 0 ]

@@ -4,6 +4,7 @@
  *   FAIL_KIND     memory: malloc, calloc, realloc, strdup, strndup give NULL
  *                 io: open, read, write, fsync, rename, mmap, connect, epoll_wait and others fail
  *                 with FAIL_ERRNO
+ *                 database: the same calls as io where SQLite makes them for the program
  *                 short: read and write of more than a byte do half of it
  *   FAIL_AT       which one, from 1; 0 or absent: none
  *   FAIL_ERRNO    a number; EIO if absent
@@ -48,7 +49,7 @@
 #define REAL(name) ((__typeof__(&(name)))dlsym(RTLD_NEXT, #name))
 #define CALLER     __builtin_return_address(0)
 
-enum kind { NOTHING, MEMORY, IO, SHORT };
+enum kind { NOTHING, MEMORY, IO, DATABASE, SHORT };
 
 /* glibc's own, which need no dlsym: that allocates. */
 void *__libc_malloc(size_t size);
@@ -59,26 +60,37 @@ void __libc_free(void *at);
 static enum kind kind;
 static unsigned long fail_at, calls;
 static int fail_errno = EIO;
-static const char *text_begin, *text_end; /* the program's code */
+static struct text {
+	const char *begin, *end;
+	ptrdiff_t offset; /* of begin in the file */
+} program, database;      /* the code of the program, and that of SQLite */
 static const char *once_path, *left_path;
-static ptrdiff_t text_offset; /* of text_begin in the program */
-static bool was_open[256];    /* descriptors, when the process began */
-static bool is_other;         /* not the process of FAIL_PROGRAM */
+static bool was_open[256]; /* descriptors, when the process began */
+static bool is_other;      /* not the process of FAIL_PROGRAM */
+
+static bool is_in(const struct text *text, const char *at)
+{
+	return at >= text->begin && at < text->end;
+}
 
 static int find_text(struct dl_phdr_info *info, size_t size, void *data)
 {
+	struct text *text = !program.begin                          ? &program
+			    : strstr(info->dlpi_name, "libsqlite3") ? &database
+								    : NULL;
+
 	(void)size;
 	(void)data;
-	for (int i = 0; i < info->dlpi_phnum; i++) {
+	for (int i = 0; text && i < info->dlpi_phnum; i++) {
 		const ElfW(Phdr) *part = &info->dlpi_phdr[i];
 
 		if (part->p_type != PT_LOAD || !(part->p_flags & PF_X))
 			continue;
-		text_begin = (const char *)(info->dlpi_addr + part->p_vaddr);
-		text_end = text_begin + part->p_memsz;
-		text_offset = (ptrdiff_t)part->p_vaddr;
+		text->begin = (const char *)(info->dlpi_addr + part->p_vaddr);
+		text->end = text->begin + part->p_memsz;
+		text->offset = (ptrdiff_t)part->p_vaddr;
 	}
-	return 1; /* the first is the program itself */
+	return 0; /* the first is the program itself */
 }
 
 /* Adds a line to the file of FAIL_ONCE. */
@@ -119,10 +131,10 @@ static void tell_crashes(void)
 __attribute__((constructor)) static void begin(void)
 {
 	const char *what = getenv("FAIL_KIND"), *at = getenv("FAIL_AT"),
-		   *code = getenv("FAIL_ERRNO"), *program = getenv("FAIL_PROGRAM");
+		   *code = getenv("FAIL_ERRNO"), *only = getenv("FAIL_PROGRAM");
 
 	dl_iterate_phdr(find_text, NULL);
-	if (program && strcmp(program, program_invocation_short_name) != 0) {
+	if (only && strcmp(only, program_invocation_short_name) != 0) {
 		is_other = true;
 		return;
 	}
@@ -135,10 +147,11 @@ __attribute__((constructor)) static void begin(void)
 	fail_at = at ? strtoul(at, NULL, 10) : 0;
 	fail_errno = code ? (int)strtol(code, NULL, 10) : EIO;
 	if (what)
-		kind = !strcmp(what, "memory")  ? MEMORY
-		       : !strcmp(what, "io")    ? IO
-		       : !strcmp(what, "short") ? SHORT
-						: NOTHING;
+		kind = !strcmp(what, "memory")     ? MEMORY
+		       : !strcmp(what, "io")       ? IO
+		       : !strcmp(what, "database") ? DATABASE
+		       : !strcmp(what, "short")    ? SHORT
+						   : NOTHING;
 }
 
 __attribute__((destructor)) static void end(void)
@@ -173,9 +186,9 @@ static bool is_first(const char *name)
 	for (int i = 0; i < count && size < sizeof(line) - 24; i++) {
 		const char *from = frames[i];
 
-		if (from >= text_begin && from < text_end)
+		if (is_in(&program, from))
 			size += (size_t)snprintf(line + size, sizeof(line) - size, " %#tx",
-						 from - text_begin + text_offset);
+						 from - program.begin + program.offset);
 	}
 	snprintf(line + size, sizeof(line) - size, "\n");
 	note(O_CREAT, line);
@@ -187,7 +200,8 @@ static bool fails(enum kind of, const void *caller, const char *name)
 {
 	const char *from = caller;
 
-	if (kind != of || from < text_begin || from >= text_end)
+	if (kind == DATABASE ? of != IO || !is_in(&database, from)
+			     : of != kind || !is_in(&program, from))
 		return false;
 	return __atomic_add_fetch(&calls, 1, __ATOMIC_RELAXED) == fail_at && is_first(name);
 }
@@ -214,7 +228,7 @@ static void *keep_block(void *at, const char *from)
 {
 	struct block *block;
 
-	if (!left_path || !at || from < text_begin || from >= text_end)
+	if (!left_path || !at || !is_in(&program, from))
 		return at;
 	pthread_mutex_lock(&blocks_lock);
 	block = unused ? unused : blocks_used < BLOCKS_MAX ? &blocks[blocks_used++] : NULL;
@@ -277,7 +291,8 @@ __attribute__((destructor)) static void tell_left(void)
 	pthread_mutex_lock(&blocks_lock);
 	for (size_t i = 0; i < CHAINS; i++)
 		for (const struct block *block = chains[i]; block; block = block->next)
-			dprintf(out, "block from %#tx\n", block->from - text_begin + text_offset);
+			dprintf(out, "block from %#tx\n",
+				block->from - program.begin + program.offset);
 	pthread_mutex_unlock(&blocks_lock);
 	tell_descriptors(out);
 	close(out);
@@ -379,6 +394,18 @@ int open(const char *path, int flags, ...)
 	return REAL(open)(path, flags, mode);
 }
 
+int open64(const char *path, int flags, ...)
+{
+	va_list list;
+	mode_t mode;
+
+	va_start(list, flags);
+	mode = mode_of(flags, list);
+	va_end(list);
+	FAIL_IO(-1);
+	return REAL(open64)(path, flags, mode);
+}
+
 int openat(int folder, const char *path, int flags, ...)
 {
 	va_list list;
@@ -467,6 +494,17 @@ CALL(int, -1, chmod, (const char *path, mode_t mode), (path, mode))
 CALL(int, -1, fchmod, (int fd, mode_t mode), (fd, mode))
 CALL(ssize_t, -1, readlink, (const char *path, char *out, size_t size), (path, out, size))
 CALL(int, -1, mkostemp, (char *path, int flags), (path, flags))
+/* as SQLite calls them */
+CALL(ssize_t, -1, pread64, (int fd, void *out, size_t size, off64_t at), (fd, out, size, at))
+CALL(ssize_t, -1, pwrite64, (int fd, const void *data, size_t size, off64_t at),
+     (fd, data, size, at))
+CALL(int, -1, ftruncate64, (int fd, off64_t size), (fd, size))
+CALL(int, -1, stat64, (const char *path, struct stat64 *out), (path, out))
+CALL(int, -1, lstat64, (const char *path, struct stat64 *out), (path, out))
+CALL(int, -1, fstat64, (int fd, struct stat64 *out), (fd, out))
+CALL(void *, MAP_FAILED, mmap64,
+     (void *at, size_t size, int protection, int flags, int fd, off64_t offset),
+     (at, size, protection, flags, fd, offset))
 CALL(DIR *, NULL, opendir, (const char *path), (path))
 CALL(FILE *, NULL, fopen, (const char *path, const char *mode), (path, mode))
 CALL(size_t, 0, fwrite, (const void *data, size_t size, size_t count, FILE *file),
