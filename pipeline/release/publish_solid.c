@@ -7,12 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/array.h"
 #include "base/log.h"
-#include "format/hierarchy.h"
-#include "format/patch.h"
 #include "geometry/tour_path.h"
 #include "geometry/vec.h"
+#include "pipeline/release/finest_patches.h"
 #include "pipeline/release/solid_grid.h"
 #include "storage/info_tour.h"
 
@@ -26,70 +24,9 @@ enum { TRIALS = 6 };
 struct surface {
 	const struct root_page *root;
 	const struct info *info;
-	struct patch_mesh *patches; /* owned, and what they hold */
-	uint32_t count, room;
+	struct finest_patches patches;
 	float clear_m; /* how far an eye stays from it */
 };
-
-static void surface_finish(struct surface *surface)
-{
-	for (uint32_t i = 0; i < surface->count; i++)
-		patch_mesh_finish(&surface->patches[i]);
-	free(surface->patches);
-}
-
-/* Keeps those patches of a group that nothing finer replaces. */
-static int add_group(struct surface *surface, struct object_store *objects, struct hash name,
-		     const struct hierarchy_patch *patches)
-{
-	struct patch_mesh meshes[GROUP_PATCHES_MAX];
-	struct buffer object;
-	uint32_t count = 0;
-	int rc;
-
-	buffer_init(&object, OBJECT_BYTES_MAX);
-	rc = object_store_read(objects, name, &object);
-	if (rc == 0)
-		rc = patch_group_decode(meshes, &count, buffer_bytes(&object));
-	if (rc == 0)
-		rc = ARRAY_RESERVE(surface->patches, surface->room, surface->count + count,
-				   UINT32_MAX);
-	for (uint32_t i = 0; i < count; i++) {
-		if (rc == 0 && patches[i].finer == HIERARCHY_NONE)
-			surface->patches[surface->count++] = meshes[i];
-		else
-			patch_mesh_finish(&meshes[i]);
-	}
-	buffer_finish(&object);
-	return rc;
-}
-
-static int surface_read(struct surface *surface, struct object_store *objects,
-			const struct page_child *page_name)
-{
-	struct hierarchy hierarchy = { 0 };
-	struct page page;
-	struct buffer bytes;
-	int rc = object_store_read_page(objects, page_name, &page, &bytes);
-
-	if (rc == 0)
-		rc = hierarchy_decode(&hierarchy, page.payload);
-	for (uint32_t i = 0; rc == 0 && i < hierarchy.group_count; i++) {
-		const struct hierarchy_group *group = &hierarchy.groups[i];
-		bool is_finest = false;
-
-		for (uint32_t k = 0; k < group->patch_count; k++)
-			is_finest |=
-				hierarchy.patches[group->first_patch + k].finer == HIERARCHY_NONE;
-		if (is_finest)
-			rc = add_group(surface, objects, page.children[i].hash,
-				       &hierarchy.patches[group->first_patch]);
-	}
-	hierarchy_finish(&hierarchy);
-	page_finish(&page);
-	buffer_finish(&bytes);
-	return rc;
-}
 
 static void add_patch(struct solid_grid *grid, const struct lattice *lattice,
 		      const struct patch_mesh *mesh)
@@ -134,8 +71,8 @@ static int make(const struct surface *surface, float cell_m, struct buffer *obje
 	rc = solid_grid_create(&grid, &options);
 	if (rc < 0)
 		return rc;
-	for (uint32_t i = 0; i < surface->count; i++)
-		add_patch(grid, &surface->root->lattice, &surface->patches[i]);
+	for (uint32_t i = 0; i < surface->patches.count; i++)
+		add_patch(grid, &surface->root->lattice, &surface->patches.meshes[i]);
 	open_eyes(grid, surface);
 	rc = solid_grid_tree(grid, &solid);
 	if (rc == 0)
@@ -191,7 +128,7 @@ int publish_solid(struct object_store *objects, const struct root_page *root,
 				   .info = info,
 				   .clear_m = tour_path_clearance_m(diagonal_m) };
 	struct buffer object;
-	int rc = surface_read(&surface, objects, hierarchy);
+	int rc = finest_patches_read(&surface.patches, objects, hierarchy);
 
 	buffer_init(&object, OBJECT_BYTES_MAX);
 	if (rc == 0)
@@ -207,7 +144,7 @@ int publish_solid(struct object_store *objects, const struct root_page *root,
 	}
 	if (rc < 0)
 		log_error("pipeline", "the space around the model: %s", strerror(-rc));
-	surface_finish(&surface);
+	finest_patches_finish(&surface.patches);
 	buffer_finish(&object);
 	return rc;
 }
