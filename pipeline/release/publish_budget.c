@@ -10,7 +10,9 @@
 #include "base/array.h"
 #include "base/log.h"
 #include "base/map.h"
+#include "pipeline/release/finest_patches.h"
 #include "pipeline/release/publish_samples.h"
+#include "pipeline/samples/tile_use.h"
 
 /* Of the root page besides its children, and of what a locator has for each page, rounded up. */
 enum { ROOT_BYTES = 512 };
@@ -72,10 +74,56 @@ static int count_bytes(uint64_t *out, struct object_store *objects,
 
 /* ---- the choice */
 
-static int choose(struct tile_choice *choice, struct samples_store *store,
-		  enum tile_choice_rule rule, uint64_t bytes)
+/* Builds the trees of patches, for rays. *out is owned by the caller: free_surface. */
+static int make_surface(struct tile_use_patch **out, struct finest_patches *patches,
+			const struct lattice *lattice)
 {
-	int rc = tile_choice_make(choice, store, rule, bytes);
+	int rc = 0;
+
+	*out = calloc((size_t)patches->count + 1, sizeof(**out));
+	if (!*out)
+		return -ENOMEM;
+	for (uint32_t i = 0; rc == 0 && i < patches->count; i++) {
+		const struct hierarchy_patch *row = &patches->rows[i];
+		struct tile_use_patch *patch = &(*out)[i];
+
+		rc = patch_bvh_init(&patch->bvh, &patches->meshes[i], lattice);
+		memcpy(patch->centre_m, row->centre_m, sizeof(patch->centre_m));
+		patch->radius_m = row->radius_m;
+	}
+	return rc;
+}
+
+static void free_surface(struct tile_use_patch *surface, uint32_t count)
+{
+	for (uint32_t i = 0; surface && i < count; i++)
+		patch_bvh_finish(&surface[i].bvh);
+	free(surface);
+}
+
+/* Foretells how much of settled pictures each tile makes up. */
+static int weigh(float **weights, struct object_store *objects, struct samples_store *store,
+		 const struct page_child *hierarchy, const struct root_page *root)
+{
+	struct finest_patches patches;
+	struct tile_use_patch *surface = NULL;
+	int rc = finest_patches_read(&patches, objects, hierarchy);
+
+	*weights = NULL;
+	if (rc == 0)
+		rc = make_surface(&surface, &patches, &root->lattice);
+	if (rc == 0)
+		rc = tile_use_make(weights, store, surface, patches.count, root->start_eye_m,
+				   root->start_target_m);
+	free_surface(surface, patches.count);
+	finest_patches_finish(&patches);
+	return rc;
+}
+
+static int choose(struct tile_choice *choice, struct samples_store *store,
+		  enum tile_choice_rule rule, const float *weights, uint64_t bytes)
+{
+	int rc = tile_choice_make(choice, store, rule, weights, bytes);
 
 	return rc < 0 ? rc : samples_store_choose(store, choice->choices, choice->tile_count);
 }
@@ -83,7 +131,7 @@ static int choose(struct tile_choice *choice, struct samples_store *store,
 int publish_budget_begin(struct samples_store *store)
 {
 	struct tile_choice choice;
-	int rc = choose(&choice, store, TILE_CHOICE_GAIN, 0);
+	int rc = choose(&choice, store, TILE_CHOICE_GAIN, NULL, 0);
 
 	tile_choice_finish(&choice);
 	return rc;
@@ -107,20 +155,24 @@ static int refuse(uint64_t budget_bytes, uint64_t least_bytes)
 
 int publish_budget_meet(struct publish_budget_report *report, struct object_store *objects,
 			struct samples_store *store, struct page_child *children,
-			uint32_t child_count, enum tile_choice_rule rule, uint64_t budget_bytes)
+			uint32_t child_count, const struct root_page *root,
+			enum tile_choice_rule rule, uint64_t budget_bytes)
 {
 	const struct sample_grid *grid = samples_store_grid(store);
 	struct tile_choice least = { 0 }, choice = { 0 };
+	float *weights = NULL;
 	uint64_t other_bytes;
 	int rc = count_bytes(&report->least_bytes, objects, children, child_count);
 
 	if (rc == 0)
-		rc = tile_choice_make(&least, store, rule, 0);
+		rc = tile_choice_make(&least, store, rule, NULL, 0);
 	if (rc == 0 && report->least_bytes > budget_bytes)
 		rc = refuse(budget_bytes, report->least_bytes);
 	other_bytes = report->least_bytes - least.bytes;
 	if (rc == 0)
-		rc = choose(&choice, store, rule, budget_bytes - other_bytes);
+		rc = weigh(&weights, objects, store, &children[ROOT_CHILD_HIERARCHY], root);
+	if (rc == 0)
+		rc = choose(&choice, store, rule, weights, budget_bytes - other_bytes);
 	if (rc == 0)
 		rc = samples_store_keep_choice(store);
 	if (rc == 0)
@@ -133,5 +185,6 @@ int publish_budget_meet(struct publish_budget_report *report, struct object_stor
 	memcpy(report->counts, choice.counts, sizeof(report->counts));
 	tile_choice_finish(&least);
 	tile_choice_finish(&choice);
+	free(weights);
 	return rc;
 }

@@ -13,7 +13,7 @@ struct publish_budget_report {
 	uint32_t choice_count;
 	uint8_t qualities[SAMPLE_CHOICES_MAX];
 	uint32_t counts[SAMPLE_CHOICES_MAX]; /* tiles of each quality */
-	double similarity;                   /* mean SSIM of what shows in tiles, 0..1 */
+	double similarity;                   /* mean SSIM of tiles, by their use, 0..1 */
 };
 
 /* Chooses the smallest tiles; publish_samples then makes the smallest samples page. The store must
@@ -28,6 +28,7 @@ must_check int publish_budget_begin(struct samples_store *store);
 must_check int publish_budget_meet(struct publish_budget_report *report,
 				   struct object_store *objects, struct samples_store *store,
 				   struct page_child *children, uint32_t child_count,
-				   enum tile_choice_rule rule, uint64_t budget_bytes);
+				   const struct root_page *root, enum tile_choice_rule rule,
+				   uint64_t budget_bytes);
 
 #endif

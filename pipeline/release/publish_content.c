@@ -235,11 +235,11 @@ static int publish_objects(struct publish_content_report *report,
 	if (rc >= 0)
 		rc = add_extras(objects, &root, sources, info, children, &child_count);
 	if (rc >= 0 && content->budget_bytes > 0)
-		rc = publish_budget_meet(&report->budget, objects, store, children, child_count,
-					 content->quality_rule == CONTENT_QUALITY_GAIN
-						 ? TILE_CHOICE_GAIN
-						 : TILE_CHOICE_QUALITY,
-					 content->budget_bytes);
+		rc = publish_budget_meet(
+			&report->budget, objects, store, children, child_count, &root,
+			content->quality_rule == CONTENT_QUALITY_GAIN ? TILE_CHOICE_GAIN
+								      : TILE_CHOICE_QUALITY,
+			content->budget_bytes);
 	samples_store_close(store);
 	if (rc >= 0)
 		rc = publish_parts(&report->publish, target, objects, &root, children, child_count);

@@ -3,6 +3,7 @@
 #include "pipeline/samples/tile_choice.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,13 +25,19 @@ struct tile {
 
 struct chooser {
 	const struct sample_grid *grid;
-	struct tile *tiles; /* owned */
+	const float *weights; /* borrowed; of tiles; NULL: all count the same */
+	struct tile *tiles;   /* owned */
 	uint32_t count, room;
-	uint64_t windows;                        /* of all tiles */
+	double windows;                          /* of all tiles, weighted */
 	uint32_t (*features)[SAMPLE_SCALES_MAX]; /* owned; of each tile */
 	uint32_t features_room;
 	uint32_t *counts; /* owned; scale by scale, as in tile_features */
 };
+
+static double weight_of(const struct chooser *chooser, uint32_t tile)
+{
+	return chooser->weights ? (double)chooser->weights[tile] : 1;
+}
 
 static void take_tile(struct chooser *chooser, const uint32_t *sizes, const uint32_t *losses)
 {
@@ -57,7 +64,7 @@ static int take_face(struct chooser *chooser, const struct sample_face *face)
 	for (uint32_t i = 0; rc == 0 && i < face->tile_count; i++) {
 		take_tile(chooser, &face->choice_sizes[i * SAMPLE_CHOICES_MAX],
 			  &face->losses[i * SAMPLE_CHOICES_MAX]);
-		chooser->windows += face->windows[i];
+		chooser->windows += face->windows[i] * weight_of(chooser, chooser->count);
 		if (face->features)
 			memcpy(chooser->features[chooser->count], face->features[i],
 			       sizeof(chooser->features[0]));
@@ -139,7 +146,7 @@ static int choose_quality(struct tile_choice *out, struct chooser *chooser, uint
 
 /* A step of a tile to a better quality. */
 struct step {
-	double gain; /* loss that it saves for each byte */
+	double gain; /* weighted loss that it saves for each byte */
 	uint32_t tile, bytes;
 	uint8_t from, to;
 };
@@ -161,6 +168,7 @@ static int by_gain(const void *left, const void *right)
 static uint32_t add_steps(struct step *steps, const struct chooser *chooser, uint32_t tile)
 {
 	const struct tile *of = &chooser->tiles[tile];
+	const double weight = weight_of(chooser, tile);
 	uint32_t from = of->instead[0], count = 0;
 
 	for (;;) {
@@ -168,7 +176,8 @@ static uint32_t add_steps(struct step *steps, const struct chooser *chooser, uin
 
 		for (uint32_t to = from + 1; to < chooser->grid->choice_count; to++) {
 			double bytes = (double)of->sizes[to] - of->sizes[from];
-			double gain = ((double)of->losses[from] - of->losses[to]) / fmax(bytes, 1);
+			double gain = weight * ((double)of->losses[from] - of->losses[to]) /
+				      fmax(bytes, 1);
 
 			if (of->sizes[to] > of->sizes[from] && gain > best.gain)
 				best = (struct step){ gain, tile, of->sizes[to] - of->sizes[from],
@@ -227,19 +236,19 @@ static int choose(struct tile_choice *out, struct chooser *chooser, enum tile_ch
 		rc = choose_quality(out, chooser, budget_bytes);
 	for (uint32_t i = 0; rc == 0 && i < chooser->count; i++) {
 		out->bytes += chooser->tiles[i].sizes[out->choices[i]];
-		loss += chooser->tiles[i].losses[out->choices[i]];
+		loss += chooser->tiles[i].losses[out->choices[i]] * weight_of(chooser, i);
 		out->counts[out->choices[i]]++;
 	}
-	out->similarity = 1 - loss / TILE_LOSS_WINDOW / fmax(1, (double)chooser->windows);
+	out->similarity = 1 - loss / TILE_LOSS_WINDOW / fmax(DBL_MIN, chooser->windows);
 	if (rc == 0 && budget_bytes > 0 && budget_bytes < out->least_bytes)
 		rc = -E2BIG;
 	return rc;
 }
 
 int tile_choice_make(struct tile_choice *out, struct samples_store *store,
-		     enum tile_choice_rule rule, uint64_t budget_bytes)
+		     enum tile_choice_rule rule, const float *weights, uint64_t budget_bytes)
 {
-	struct chooser chooser = { .grid = samples_store_grid(store) };
+	struct chooser chooser = { .grid = samples_store_grid(store), .weights = weights };
 	struct sample_face face;
 	int rc = chooser.grid->choice_count > 1 ? 0 : -EINVAL;
 

@@ -83,5 +83,5 @@ for rule in uniform features; do
 done
 similarity() { sed -n 's/.*mean SSIM //p' "$work/$1.txt"; }
 awk "BEGIN { exit !($(similarity at85) > $(similarity uniform)) }" ||
-	fail "bytes where they gain make $(similarity at85), all alike $(similarity uniform)"
+	fail "of what is shown, bytes where they gain make $(similarity at85), all alike $(similarity uniform)"
 echo "budgets are met: $most bytes at most, $least at least"

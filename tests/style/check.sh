@@ -68,7 +68,7 @@ is_public() {
 	pipeline/scene/*) names="vrml vrml_text vrml_surface vrml_scenery vrml_views scene_views gltf_views gltf gltf_scenery scenery_maker soup" ;;
 	pipeline/content/*) names="content scans sources info_build part_faces spoken_sound tour_check annotations annotations_export annotations_import start_view work_lock" ;;
 	pipeline/hierarchy/*) names="master master_cut normal_cone stream_encode" ;;
-	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice reference sampling_forecast sampling_trial portrait scale_space tile_quality" ;;
+	pipeline/samples/*) names="model model_master pieces raster sight chunks sampler sample_store tile_choice tile_use reference sampling_forecast sampling_trial portrait scale_space tile_quality" ;;
 	pipeline/release/*) names="delegation publish_content verify inspect inspect_release release_look" ;;
 	pipeline/report/*) names="report" ;;
 	pipeline/octree/*) names="reconstruct closed_surface budget_mesh mesh_ply" ;;

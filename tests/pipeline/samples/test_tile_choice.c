@@ -111,11 +111,11 @@ static void meets_budgets(enum tile_choice_rule rule)
 	struct samples_store *store = fill(&plain);
 	struct tile_choice least, choice;
 
-	CHECK(tile_choice_make(&least, store, rule, 0) == 0);
+	CHECK(tile_choice_make(&least, store, rule, NULL, 0) == 0);
 	CHECK(least.tile_count == ALL && least.bytes == least.least_bytes);
 	CHECK(least.counts[0] == ALL);
 	for (uint64_t budget = least.bytes; budget <= least.most_bytes + 500; budget += 61) {
-		CHECK(tile_choice_make(&choice, store, rule, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, rule, NULL, budget) == 0);
 		CHECK(choice.bytes <= budget);
 		CHECK(choice.bytes * 100 >= budget * 98 || choice.bytes == choice.most_bytes ||
 		      budget < least.bytes + 400);
@@ -124,7 +124,7 @@ static void meets_budgets(enum tile_choice_rule rule)
 		CHECK(bytes_given(store) == choice.bytes);
 		tile_choice_finish(&choice);
 	}
-	CHECK(tile_choice_make(&choice, store, rule, least.bytes - 1) == -E2BIG);
+	CHECK(tile_choice_make(&choice, store, rule, NULL, least.bytes - 1) == -E2BIG);
 	CHECK(choice.least_bytes == least.bytes);
 	tile_choice_finish(&choice);
 	tile_choice_finish(&least);
@@ -148,8 +148,8 @@ static void bytes_go_where_they_gain(void **state)
 
 	(void)state;
 	for (uint64_t budget = 9500; budget <= 24000; budget += 1450) {
-		CHECK(tile_choice_make(&gain, store, TILE_CHOICE_GAIN, budget) == 0);
-		CHECK(tile_choice_make(&alike, store, TILE_CHOICE_QUALITY, budget) == 0);
+		CHECK(tile_choice_make(&gain, store, TILE_CHOICE_GAIN, NULL, budget) == 0);
+		CHECK(tile_choice_make(&alike, store, TILE_CHOICE_QUALITY, NULL, budget) == 0);
 		CHECK(gain.similarity > alike.similarity);
 		CHECK(gain.choices[50] > 0);
 		/* but for a few with which the last bytes are used */
@@ -163,6 +163,37 @@ static void bytes_go_where_they_gain(void **state)
 	samples_store_close(store);
 }
 
+/* What is hardly ever shown waits; and the mean similarity is of what is shown. */
+static void bytes_go_where_the_weight_is(void **state)
+{
+	struct samples_store *store = fill(&plain);
+	struct tile_choice weighted, alike;
+	float weights[ALL];
+	uint32_t sums[2] = { 0 };
+
+	(void)state;
+	for (uint32_t i = 0; i < ALL; i++)
+		weights[i] = i < ALL / 2 ? 0.01f : 1;
+	CHECK(tile_choice_make(&weighted, store, TILE_CHOICE_GAIN, weights, 14000) == 0);
+	CHECK(tile_choice_make(&alike, store, TILE_CHOICE_GAIN, NULL, 14000) == 0);
+	for (uint32_t i = 0; i < ALL; i++)
+		sums[i / (ALL / 2)] += weighted.choices[i];
+	CHECK(sums[1] > 4 * sums[0]);
+	CHECK(weighted.similarity > alike.similarity);
+	tile_choice_finish(&weighted);
+	tile_choice_finish(&alike);
+	/* Weights of one size change nothing. */
+	for (uint32_t i = 0; i < ALL; i++)
+		weights[i] = 0.5f;
+	CHECK(tile_choice_make(&weighted, store, TILE_CHOICE_GAIN, weights, 14000) == 0);
+	CHECK(tile_choice_make(&alike, store, TILE_CHOICE_GAIN, NULL, 14000) == 0);
+	CHECK(memcmp(weighted.choices, alike.choices, ALL) == 0);
+	CHECK(weighted.similarity == alike.similarity);
+	tile_choice_finish(&weighted);
+	tile_choice_finish(&alike);
+	samples_store_close(store);
+}
+
 /* A better tile of fewer bytes is taken in place of a worse one. */
 static void nothing_worse_costs_more(void **state)
 {
@@ -171,7 +202,7 @@ static void nothing_worse_costs_more(void **state)
 
 	(void)state;
 	for (uint64_t budget = 10000; budget < 40000; budget += 777) {
-		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, NULL, budget) == 0);
 		CHECK(choice.choices[3] != 1);
 		tile_choice_finish(&choice);
 	}
@@ -186,7 +217,7 @@ static void what_is_left_is_spread_over_all(void **state)
 	uint32_t better[2] = { 0 };
 
 	(void)state;
-	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 12000) == 0);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, NULL, 12000) == 0);
 	for (uint32_t i = 0; i < ALL; i++)
 		better[i / (ALL / 2)] += choice.choices[i] > 0;
 	CHECK(better[0] > ALL / 8 && better[1] > ALL / 8);
@@ -208,7 +239,7 @@ static void relief_gets_more(void **state)
 	for (uint64_t budget = 12000; budget <= 26000; budget += 14000) {
 		uint32_t sums[2] = { 0 };
 
-		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, budget) == 0);
+		CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, NULL, budget) == 0);
 		CHECK(choice.bytes <= budget && choice.bytes * 100 >= budget * 98);
 		for (uint32_t i = 0; i < ALL; i++)
 			sums[i / (ALL / 2)] += choice.choices[i];
@@ -225,7 +256,7 @@ static void the_choice_is_kept_until_samples_change(void **state)
 	struct sample_grid other = plain;
 
 	(void)state;
-	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 15000) == 0);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, NULL, 15000) == 0);
 	CHECK(samples_store_choose(store, choice.choices, choice.tile_count) == 0);
 	CHECK(samples_store_keep_choice(store) == 0);
 	samples_store_close(store);
@@ -248,7 +279,7 @@ static void a_store_without_a_choice_is_refused(void **state)
 	(void)state;
 	grid.choice_count = 1;
 	store = fill(&grid);
-	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, 10000) == -EINVAL);
+	CHECK(tile_choice_make(&choice, store, TILE_CHOICE_QUALITY, NULL, 10000) == -EINVAL);
 	CHECK(bytes_given(store) > 0);
 	samples_store_close(store);
 }
@@ -258,6 +289,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(budgets_are_met),
 		cmocka_unit_test(bytes_go_where_they_gain),
+		cmocka_unit_test(bytes_go_where_the_weight_is),
 		cmocka_unit_test(nothing_worse_costs_more),
 		cmocka_unit_test(what_is_left_is_spread_over_all),
 		cmocka_unit_test(relief_gets_more),
