@@ -76,7 +76,7 @@ SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools
             tests/tools/virtual_clock
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
-BENCH_PARTS := $(BUILD)/obj/tests/bench/stage.o $(BUILD)/obj/tests/bench/visit.o $(BUILD)/obj/tests/bench/hand.o
+BENCH_PARTS := $(patsubst %,$(BUILD)/obj/tests/bench/%.o,stage visit hand shown)
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all

@@ -2,13 +2,14 @@
  * true pictures, how good it is. The stage's clock makes it repeatable to the bit.
  *
  *   bench_view RELEASE VIEWS OUT [--mode lumigraph|corners|polygons] [--size WxH] [--truth FOLDER]
- *              [--error-px E] [--triangles N] [--texture-mb N] [--price PX] [--link MBIT] [--trace
- * DB]
+ *              [--error-px E] [--triangles N] [--texture-mb N] [--price PX] [--link MBIT]
+ *              [--trace DB] [--shown FILE]
  *
  * VIEWS: a line a view, eye x y z, target x y z, vertical field of view in degrees. OUT gets
  * view-NNNN.png (alpha is coverage) and views.jsonl. FOLDER holds view-NNNN.png of the same views
  * (gopura-content render). --link: objects come at so many megabits a second, 40 ms away.
- * --trace: tells what the first view is worth at rest after every 100 KB, and when it had DB. */
+ * --trace: tells what the first view is worth at rest after every 100 KB, and when it had DB.
+ * --shown: writes how much of each view every tile makes up (shown.h) into FILE-NNNN. */
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,12 +19,13 @@
 
 #include "app/settings/scene_settings.h"
 #include "base/clock.h"
+#include "tests/bench/shown.h"
 #include "tests/bench/stage.h"
 
 enum { SETTLE_MS = 240000, TRACE_BYTES = 100000 };
 
 struct bench {
-	const char *release, *views, *out, *truth;
+	const char *release, *views, *out, *truth, *shown;
 	struct stage_options options;
 	struct stage stage;
 	struct camera camera[STAGE_VIEWS_MAX];
@@ -43,6 +45,8 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		scene->mode = !strcmp(value, "polygons")  ? SCENE_POLYGONS
 			      : !strcmp(value, "corners") ? SCENE_CORNERS
 							  : SCENE_LUMIGRAPH;
+	else if (!strcmp(name, "--shown"))
+		bench->shown = value;
 	else if (!strcmp(name, "--size"))
 		sscanf(value, "%dx%d", &bench->options.width_px, &bench->options.height_px);
 	else if (!strcmp(name, "--truth"))
@@ -113,6 +117,20 @@ static void trace(struct bench *bench)
 	stage->bytes_most = UINT64_MAX;
 }
 
+/* FILE-NNNN: the tiles of a view. */
+static void write_shown(const struct bench *bench, uint32_t view)
+{
+	char path[512];
+	FILE *file;
+
+	snprintf(path, sizeof(path), "%s-%04u", bench->shown, view);
+	file = fopen(path, "we");
+	if (!file)
+		stage_die(path, -errno);
+	stage_must(shown_write(bench->stage.scene, file), path);
+	fclose(file);
+}
+
 static void draw_view(struct bench *bench, uint32_t view)
 {
 	struct stage *stage = &bench->stage;
@@ -127,6 +145,8 @@ static void draw_view(struct bench *bench, uint32_t view)
 
 	stage_keep(stage, rgba, bench->out, view);
 	free(rgba);
+	if (bench->shown)
+		write_shown(bench, view);
 	if (!isnan(psnr))
 		bench->psnr[bench->scored++] = psnr;
 	fprintf(bench->lines,
