@@ -44,22 +44,23 @@ static int create_surface(struct drm_display *drm)
 	return drm->surface ? 0 : -ENODEV;
 }
 
-/* Returns the EGL configuration whose pixel format the plane scans out. */
+/* Returns the EGL configuration whose pixel format the plane scans out. A processor enlarges and
+ * copies pictures several times faster into a surface without depth (gl_draw_square). */
 static EGLConfig choose_config(EGLDisplay egl)
 {
-	static const EGLint wanted[] = { EGL_SURFACE_TYPE,
-					 EGL_WINDOW_BIT,
-					 EGL_RENDERABLE_TYPE,
-					 EGL_OPENGL_ES2_BIT,
-					 EGL_RED_SIZE,
-					 8,
-					 EGL_GREEN_SIZE,
-					 8,
-					 EGL_BLUE_SIZE,
-					 8,
-					 EGL_DEPTH_SIZE,
-					 24,
-					 EGL_NONE };
+	const EGLint wanted[] = { EGL_SURFACE_TYPE,
+				  EGL_WINDOW_BIT,
+				  EGL_RENDERABLE_TYPE,
+				  EGL_OPENGL_ES2_BIT,
+				  EGL_RED_SIZE,
+				  8,
+				  EGL_GREEN_SIZE,
+				  8,
+				  EGL_BLUE_SIZE,
+				  8,
+				  EGL_DEPTH_SIZE,
+				  context_is_software(egl) ? 0 : 24,
+				  EGL_NONE };
 	EGLConfig configs[64];
 	EGLint count = 0, visual;
 

@@ -25,7 +25,8 @@ static int create(struct display *display, const struct display_options *options
 	display->height_px = options->height_px ? options->height_px : 720;
 	rc = headless_create(&memory->headless);
 	if (rc == 0)
-		rc = gl_target_create(&memory->target, display->width_px, display->height_px);
+		rc = headless_panel(memory->headless, &memory->target, display->width_px,
+				    display->height_px);
 	return rc;
 }
 

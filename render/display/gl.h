@@ -52,12 +52,17 @@ must_check int gl_program_build(GLuint *out, const struct gl_program_source *sou
  * 0..1 to the right and up; its program is linked with gl_square_attributes. */
 extern const char gl_square_vertex[];
 extern const char *const gl_square_attributes[];
-/* Draws the viewport as two triangles with the current program; leaves attribute 0 disabled. */
+/* Draws the viewport as two triangles with the current program; leaves attribute 0 disabled.
+ *
+ * llvmpipe, which draws on the processor, draws a rectangle line by line instead of fragment by
+ * fragment, in a third to a sixth of the time, if the framebuffer has no depth buffer, it and the
+ * texture have the order of bytes of gl_target_create, and the fragment shader does no more than
+ * look up v_at through a FINE sampler (docs/picture.md). */
 void gl_draw_square(void);
 
 struct gl_texture_options {
 	int width_px, height_px;
-	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA */
+	GLenum format;      /* GL_RGB, GL_RGBA, GL_LUMINANCE, GL_ALPHA; or of gl_picture_format */
 	GLenum type;        /* 0: 8 bits per channel; or GL_UNSIGNED_SHORT_5_6_5 */
 	GLenum filter;      /* GL_NEAREST or GL_LINEAR; with mipmaps: trilinear */
 	bool mipmaps;       /* sides must be powers of two (GLES2) */
@@ -72,7 +77,12 @@ must_check int gl_texture_create(GLuint *out, const struct gl_texture_options *o
 /* Binds a texture to unit 0 .. GL_LIMIT_UNITS - 1, and leaves that unit active. */
 void gl_bind_texture(unsigned unit, GLuint texture);
 
-/* A render target: an RGBA texture and a depth buffer (24 bits where the driver has them). */
+/* Returns the format of pictures: GL_BGRA_EXT where the driver has it, as panels and Cairo order
+ * bytes, else GL_RGBA. */
+GLenum gl_picture_format(void);
+
+/* A render target: a texture of gl_picture_format and a depth buffer (24 bits where the driver has
+ * them). */
 struct gl_target {
 	GLuint framebuffer, colour, depth;
 	int width_px, height_px;
@@ -83,6 +93,7 @@ struct gl_target {
 struct gl_place {
 	GLuint framebuffer;
 	int x_px, y_px;
+	bool has_depth; /* a depth buffer; without one, a model is drawn elsewhere and copied */
 };
 /* Binds the framebuffer and sets the viewport to the picture. */
 void gl_place_bind(const struct gl_place *place, int width_px, int height_px);

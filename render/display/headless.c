@@ -95,6 +95,14 @@ done:
 	return 0;
 }
 
+int headless_panel(const struct headless *headless, struct gl_target *out, int width_px,
+		   int height_px)
+{
+	return context_is_software(headless->display)
+		       ? gl_target_create_flat(out, width_px, height_px)
+		       : gl_target_create(out, width_px, height_px);
+}
+
 void headless_destroy(struct headless *headless)
 {
 	if (!headless)

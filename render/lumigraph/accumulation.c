@@ -7,8 +7,7 @@
  * only delay the panel. */
 enum { PASSES_MAX = 6 };
 
-static const char square_fragment[] = "precision mediump float;\n"
-				      "uniform sampler2D u_picture;\n"
+static const char square_fragment[] = "uniform FINE sampler2D u_picture;\n"
 				      "varying vec2 v_at;\n"
 				      "void main() {\n"
 				      "	gl_FragColor = texture2D(u_picture, v_at);\n"
@@ -19,7 +18,7 @@ static int build(struct accumulation *accumulation)
 	const struct gl_program_source source = {
 		.name = "accumulation",
 		.vertex = (const char *const[]){ gl_square_vertex, NULL },
-		.fragment = (const char *const[]){ square_fragment, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, square_fragment, NULL },
 		.attributes = gl_square_attributes,
 	};
 	int rc = gl_program_build(&accumulation->program, &source);

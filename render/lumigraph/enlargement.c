@@ -9,7 +9,7 @@ static const float scale_steps = 32;
 
 /* The coordinate is used as it is interpolated: even where fragments have only mediump, hardware
  * interpolates texture coordinates more exactly than it computes. */
-static const char enlarge_fragment[] = "uniform sampler2D u_picture;\n"
+static const char enlarge_fragment[] = "uniform FINE sampler2D u_picture;\n"
 				       "varying vec2 v_at;\n"
 				       "void main() {\n"
 				       "	gl_FragColor = texture2D(u_picture, v_at);\n"

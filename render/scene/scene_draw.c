@@ -392,12 +392,13 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	return true;
 }
 
-/* The mask of the marked part needs the depth of the picture, so a moving one is drawn aside. */
+/* The mask of the marked part needs the depth of the picture, so a moving one is drawn aside; so is
+ * all where the place has no depth. */
 static void show_moving(struct scene *scene, const struct gl_place *place)
 {
 	const struct view *view = &scene->view;
 	const struct gl_target *frame = &scene->accumulation.frame;
-	if (!scene->is_marked ||
+	if ((place->has_depth && !scene->is_marked) ||
 	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0) {
 		gl_place_bind(place, view->width_px, view->height_px);
 		begin_picture(scene);
@@ -462,7 +463,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 		struct scene_frame *out)
 {
 	struct gl_place place = { .x_px = camera->shift_px[0], .y_px = camera->shift_px[1] };
-	GLint framebuffer = 0;
+	GLint framebuffer = 0, depth_bits = 0;
 	*out = (struct scene_frame){ .image_share = -1 };
 	scene->wants_are_stale = scene->wants_are_stale || scene->lacked_memory;
 	scene->lacked_memory = false;
@@ -472,7 +473,9 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 		return;
 	}
 	glGetIntegerv(GL_FRAMEBUFFER_BINDING, &framebuffer);
+	glGetIntegerv(GL_DEPTH_BITS, &depth_bits);
 	place.framebuffer = (GLuint)framebuffer;
+	place.has_depth = depth_bits > 0;
 	struct view view;
 	view_from_camera(&view, camera);
 	section_cut(&scene->tools.section, view.eye_m, view.cut);

@@ -24,6 +24,7 @@ enum { VIEWS_MAX = 16, FRAMES_MAX = 1000, SETTLE_MS = 120000, CROSSING_FRAMES = 
 
 struct bench {
 	struct stage stage;
+	struct gl_target deep; /* as large, with depth, which a panel's may lack */
 	GLuint quad_program, plain_program, texture, quad_buffer;
 	GLint plain_clip, plain_lattice;
 	struct camera cameras[VIEWS_MAX], moving;
@@ -84,9 +85,9 @@ static void make_programs(struct bench *bench)
 	glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners, GL_STATIC_DRAW);
 }
 
-static void clear(const struct bench *bench)
+static void clear(const struct gl_target *target)
 {
-	gl_target_bind(&bench->stage.target);
+	gl_target_bind(target);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
@@ -111,7 +112,7 @@ static void draw_plain(struct bench *bench)
 	const struct lattice *lattice = &scene->root.lattice;
 	const float *eye = scene->view.eye_m;
 
-	clear(bench);
+	clear(&bench->deep);
 	glDisable(GL_BLEND);
 	glEnable(GL_DEPTH_TEST);
 	glUseProgram(bench->plain_program);
@@ -255,7 +256,7 @@ static void draw_moving(struct bench *bench)
 	bench->moving.target_m[0] += 0.001f;
 	const struct scene_effort effort = governor_effort(&bench->governor);
 
-	clear(bench);
+	clear(&bench->stage.target);
 	scene_spend(bench->stage.scene, &effort);
 	scene_draw(bench->stage.scene, &bench->moving, NULL, &bench->frame);
 }
@@ -304,13 +305,25 @@ static struct cost mode_cost(struct bench *bench, enum scene_mode mode)
 	};
 }
 
+static void begin(struct bench *bench, const struct stage_options *options)
+{
+	stage_open(&bench->stage, options);
+	stage_must(gl_target_create(&bench->deep, options->width_px, options->height_px), "target");
+	make_programs(bench);
+}
+
+static void end(struct bench *bench)
+{
+	gl_target_destroy(&bench->deep);
+	stage_close(&bench->stage);
+}
+
 static void measure(struct bench *bench, const struct stage_options *options, bool last)
 {
 	struct cost images, polygons = { 0 };
 	double quads[2], quad;
 
-	stage_open(&bench->stage, options);
-	make_programs(bench);
+	begin(bench, options);
 	quads[0] = median_spent(bench, draw_quad).ms;
 	images = mode_cost(bench, SCENE_LUMIGRAPH);
 	if (!bench->frames_alone)
@@ -332,7 +345,7 @@ static void measure(struct bench *bench, const struct stage_options *options, bo
 		       polygons.crossing_pct);
 	printf("}%s\n", last ? "" : ",");
 	fflush(stdout);
-	stage_close(&bench->stage);
+	end(bench);
 }
 
 /* At each level all views, the measure beside them. */
@@ -340,8 +353,7 @@ static void measure_levels(struct bench *bench, const struct stage_options *opti
 {
 	static const float levels[] = { 1, 0.8f, 0.6f, 0.4f, 0.3f, 0.2f, 0.1f, 0 };
 
-	stage_open(&bench->stage, options);
-	make_programs(bench);
+	begin(bench, options);
 	for (size_t i = 0; i < ARRAY_COUNT(levels); i++) {
 		struct scene_effort effort;
 		struct cost cost;
@@ -357,7 +369,7 @@ static void measure_levels(struct bench *bench, const struct stage_options *opti
 		       cost.scene.ms / cost.plain.ms, i + 1 < ARRAY_COUNT(levels) ? "," : "");
 		fflush(stdout);
 	}
-	stage_close(&bench->stage);
+	end(bench);
 }
 
 int main(int argc, char **argv)

@@ -164,7 +164,8 @@ void stage_open(struct stage *stage, const struct stage_options *options)
 	is_virtual = !options->wall_clock;
 	open_release(stage);
 	stage_must(headless_create(&stage->headless), "no GL");
-	stage_must(gl_target_create(&stage->target, options->width_px, options->height_px),
+	stage_must(headless_panel(stage->headless, &stage->target, options->width_px,
+				  options->height_px),
 		   "target");
 	stage_begin(stage, &options->scene);
 }
