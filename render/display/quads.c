@@ -18,6 +18,7 @@ struct quads_texture {
 struct quads {
 	GLuint program;
 	GLint to_clip, alpha;
+	GLenum format; /* of textures */
 	struct quads_texture textures[QUADS_TEXTURES_MAX];
 	uint8_t *rows;      /* owned; scratch for bitmaps with padded rows */
 	uint32_t rows_room; /* bytes */
@@ -33,19 +34,20 @@ static const char vertex_source[] =
 	"	gl_Position = vec4((to_clip * vec3(position, 1.0)).xy, 0.0, 1.0);\n"
 	"}\n";
 
-/* Cairo's bytes are B, G, R, A, so the channels are swapped here. */
-static const char fragment_source[] = "precision mediump float;\n"
-				      "uniform sampler2D picture;\n"
+/* Cairo's bytes are B, G, R, A: where textures cannot be, ORDER swaps the channels. */
+static const char fragment_source[] = "uniform FINE sampler2D picture;\n"
 				      "uniform float alpha;\n"
 				      "varying vec2 at;\n"
 				      "void main() {\n"
-				      "	gl_FragColor = texture2D(picture, at).bgra * alpha;\n"
+				      "	gl_FragColor = texture2D(picture, at) ORDER * alpha;\n"
 				      "}\n";
 
 int quads_create(struct quads **out)
 {
 	static const char *const vertex[] = { vertex_source, NULL };
-	static const char *const fragment[] = { fragment_source, NULL };
+	const GLenum format = gl_picture_format();
+	const char *const order = format == GL_RGBA ? "#define ORDER .bgra\n" : "#define ORDER\n";
+	const char *const fragment[] = { gl_fine_fragment, order, fragment_source, NULL };
 	static const char *const attributes[] = { "position", "source", NULL };
 	const struct gl_program_source source = { "quads", vertex, fragment, attributes };
 	struct quads *quads = calloc(1, sizeof(*quads));
@@ -59,6 +61,7 @@ int quads_create(struct quads **out)
 		free(quads);
 		return rc;
 	}
+	quads->format = format;
 	quads->to_clip = glGetUniformLocation(quads->program, "to_clip");
 	quads->alpha = glGetUniformLocation(quads->program, "alpha");
 	*out = quads;
@@ -110,12 +113,12 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 	    texture->height_px == pixels->height_px) {
 		gl_bind_texture(0, texture->name);
 		glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, pixels->width_px, pixels->height_px,
-				GL_RGBA, GL_UNSIGNED_BYTE, rows);
+				quads->format, GL_UNSIGNED_BYTE, rows);
 	} else {
 		const struct gl_texture_options options = {
 			.width_px = pixels->width_px,
 			.height_px = pixels->height_px,
-			.format = GL_RGBA,
+			.format = quads->format,
 			.filter = GL_LINEAR,
 			.pixels = rows,
 		};
