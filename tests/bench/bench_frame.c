@@ -1,7 +1,8 @@
 /* What a frame costs with the eye moving a millimetre a frame over a warm scene, as a multiple of
  * the same triangles with one plain texture lookup, and of one textured quad that fills the screen.
- * Everything in one run, each frame finished before the clock stops. And how much of the picture
- * changes when the eye crosses the border between two cells of the grid by a millimetre a frame.
+ * What enlarging a picture of half the size takes. Everything in one run, each frame finished
+ * before the clock stops. And how much of the picture changes when the eye crosses the border
+ * between two cells of the grid by a millimetre a frame.
  *
  *   bench_frame RELEASE VIEWS [FRAMES [frames|levels]]
  *
@@ -16,6 +17,7 @@
 
 #include "app/settings/scene_settings.h"
 #include "base/clock.h"
+#include "render/lumigraph/enlargement.h"
 #include "render/scene/governor.h"
 #include "render/scene/scene_parts.h"
 #include "tests/bench/stage.h"
@@ -25,6 +27,7 @@ enum { VIEWS_MAX = 16, FRAMES_MAX = 1000, SETTLE_MS = 120000, CROSSING_FRAMES = 
 struct bench {
 	struct stage stage;
 	struct gl_target deep; /* as large, with depth, which a panel's may lack */
+	struct enlargement enlargement;
 	GLuint quad_program, plain_program, texture, quad_buffer;
 	GLint plain_clip, plain_lattice;
 	struct camera cameras[VIEWS_MAX], moving;
@@ -103,6 +106,18 @@ static void draw_quad(struct bench *bench)
 	glEnableVertexAttribArray(0);
 	glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, NULL);
 	glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+/* A picture of half the size to all of the panel, as at the governor's lower levels. */
+static void draw_enlarged(struct bench *bench)
+{
+	const struct gl_target *panel = &bench->stage.target;
+	const struct gl_place place = { .framebuffer = panel->framebuffer };
+	const struct view small = { .width_px = panel->width_px / 2,
+				    .height_px = panel->height_px / 2 };
+
+	stage_must(enlargement_begin(&bench->enlargement, &small), "enlargement");
+	enlargement_end(&bench->enlargement, &place, panel->width_px, panel->height_px);
 }
 
 /* The pieces that the scene just drew, all of a patch at once. */
@@ -315,26 +330,28 @@ static void begin(struct bench *bench, const struct stage_options *options)
 static void end(struct bench *bench)
 {
 	gl_target_destroy(&bench->deep);
+	enlargement_finish(&bench->enlargement);
 	stage_close(&bench->stage);
 }
 
 static void measure(struct bench *bench, const struct stage_options *options, bool last)
 {
 	struct cost images, polygons = { 0 };
-	double quads[2], quad;
+	double quads[2], quad, enlarged;
 
 	begin(bench, options);
+	enlarged = median_spent(bench, draw_enlarged).ms;
 	quads[0] = median_spent(bench, draw_quad).ms;
 	images = mode_cost(bench, SCENE_LUMIGRAPH);
 	if (!bench->frames_alone)
 		polygons = mode_cost(bench, SCENE_POLYGONS);
 	quads[1] = median_spent(bench, draw_quad).ms;
 	quad = (quads[0] + quads[1]) / 2;
-	printf(" {\"size\": \"%dx%d\", \"quad_ms\": %.3f, \"plain_ms\": %.3f, \"lumigraph_ms\": %.3f, "
+	printf(" {\"size\": \"%dx%d\", \"quad_ms\": %.3f, \"enlarging_ms\": %.3f, \"plain_ms\": %.3f, \"lumigraph_ms\": %.3f, "
 	       "\"plain_cpu_ms\": %.3f, \"lumigraph_cpu_ms\": %.3f, \"triangles\": %.0f, "
 	       "\"lumigraph_per_plain\": %.2f, \"lumigraph_per_quad\": %.2f",
-	       options->width_px, options->height_px, quad, images.plain.ms, images.scene.ms,
-	       images.plain.cpu_ms, images.scene.cpu_ms, images.triangles,
+	       options->width_px, options->height_px, quad, enlarged, images.plain.ms,
+	       images.scene.ms, images.plain.cpu_ms, images.scene.cpu_ms, images.triangles,
 	       images.scene.ms / images.plain.ms, images.scene.ms / quad);
 	if (!bench->frames_alone)
 		printf(", \"polygons_ms\": %.3f, \"polygons_per_quad\": %.2f, "
