@@ -13,7 +13,7 @@
 enum {
 	RETRY_MS = 30000,
 	COMPLAIN_MS = 60000,
-	FAULTS_MAX = 16, /* consecutive failed reads after which the file counts as damaged */
+	FAULTS_MAX = 16, /* failed reads in a row after which the file counts as damaged */
 	BROKEN_BYTES_MAX =
 		1 << 20, /* how much of a damaged file is kept for inspection: header and schema */
 	SCHEMA_VERSION = 2,
@@ -78,7 +78,15 @@ void cache_close(struct cache *cache)
 	cache->in_batch = false;
 	cache->batch_pages = 0;
 	cache->log_pages = 0;
-	cache->faults = 0;
+}
+
+/* One failed read may be the card's last word on a page or not: only many in a row are taken for
+ * damage, since a new cache begins empty, perhaps far from any server. */
+static bool is_damaged(struct cache *cache, int rc, bool read_failed)
+{
+	if (rc == -EBADMSG && !read_failed)
+		return true;
+	return (rc == -EIO || rc == -EBADMSG) && ++cache->faults >= FAULTS_MAX;
 }
 
 static int on_log(void *data, sqlite3 *db, const char *name, int pages)
@@ -147,7 +155,8 @@ static int prepare_all(struct cache *cache)
 	return 0;
 }
 
-static int open_db(struct cache *cache)
+/* damaged: whether a new one must take its place; NULL: this is the new one. */
+static int open_db(struct cache *cache, bool *damaged)
 {
 	int rc = db_open(&cache->db, cache->path);
 	sqlite3_int64 tick = 0;
@@ -167,6 +176,8 @@ static int open_db(struct cache *cache)
 		rc = -EBADMSG;
 	if (rc < 0) {
 		complain(cache, rc, "opening the cache");
+		if (damaged)
+			*damaged = is_damaged(cache, rc, db_read_failed(cache->db));
 		cache_close(cache);
 		return rc;
 	}
@@ -182,12 +193,13 @@ static void start_over(struct cache *cache)
 	int rc;
 
 	cache_close(cache);
+	cache->faults = 0;
 	cache->figures.set_aside++;
 	rc = db_set_aside(cache->path, BROKEN_BYTES_MAX);
 	log_warn("storage", "%s was damaged; renamed to %s.broken, and a new cache begins",
 		 cache->path, cache->path);
 	if (rc == 0)
-		rc = open_db(cache);
+		rc = open_db(cache, NULL);
 	if (rc < 0) {
 		complain(cache, rc, "beginning a new cache");
 		cache->retry_at_ms = clock_now_ms() + RETRY_MS;
@@ -206,21 +218,21 @@ int cache_judge(struct cache *cache, int rc, const char *doing)
 		cache->in_batch = false;
 		cache->batch_pages = 0;
 	}
-	if (rc == -EBADMSG || (rc == -EIO && ++cache->faults >= FAULTS_MAX)) {
+	if (is_damaged(cache, rc, db_read_failed(cache->db)))
 		start_over(cache);
-		return -EIO;
-	}
-	return rc == -EROFS || rc == -EBUSY ? -EIO : rc;
+	return rc == -EROFS || rc == -EBUSY || rc == -EBADMSG ? -EIO : rc;
 }
 
 bool cache_ready(struct cache *cache)
 {
+	bool damaged = false;
+
 	if (cache->db)
 		return true;
 	if (clock_now_ms() < cache->retry_at_ms)
 		return false;
 	cache->retry_at_ms = clock_now_ms() + RETRY_MS;
-	if (open_db(cache) == -EBADMSG)
+	if (open_db(cache, &damaged) < 0 && damaged)
 		start_over(cache);
 	return cache->db != NULL;
 }

@@ -45,6 +45,20 @@ int db_error(sqlite3 *db, int code, const char *doing)
 	return rc;
 }
 
+bool db_read_failed(sqlite3 *db)
+{
+	sqlite3_file *log = NULL;
+	int of_file = 0, of_log = 0;
+
+	if (!db)
+		return false;
+	(void)sqlite3_file_control(db, NULL, SQLITE_FCNTL_LAST_ERRNO, &of_file);
+	if (sqlite3_file_control(db, NULL, SQLITE_FCNTL_JOURNAL_POINTER, &log) == SQLITE_OK &&
+	    log && log->pMethods)
+		(void)log->pMethods->xFileControl(log, SQLITE_FCNTL_LAST_ERRNO, &of_log);
+	return of_file != 0 || of_log != 0;
+}
+
 int db_open(sqlite3 **out, const char *path)
 {
 	int flags = SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX |

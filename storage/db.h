@@ -15,6 +15,10 @@ must_check int db_code(int code);
 /* As db_code, and logs the error. db may be NULL. */
 must_check int db_error(sqlite3 *db, int code, const char *doing);
 
+/* Returns whether a read of the open database or its log has failed in the system: SQLite calls a
+ * page damaged then (SQLITE_IOERR_CORRUPTFS) that may be read the next time. NULL: false. */
+bool db_read_failed(sqlite3 *db);
+
 /* Opens or creates a database for one thread of this process only (exclusive locking). On failure
  * *out is NULL. Returns errors as db_code. */
 must_check int db_open(sqlite3 **out, const char *path);

@@ -1,12 +1,13 @@
 # The uses of the programs that run on, for torture.sh, which sources this:
 #
 #   fetch    from an empty cache it brings a release from nginx for a client, and ends with it
+#   again    the same with a cache that has all of it, which must not be set aside
 #   health   it is started by a request, answers each of its pages, and ends when idle (torture_health.py)
 #   curator  it starts, ana signs in, opens a page, saves a page and a text, it ends (torture_curator.py)
 #   kiosk    it starts with a release and a fetcher of its own, and ends when the picture is complete
 #   touch    the same, and fingers open a part's card and page
 
-visits="fetch health curator kiosk touch" visit=$work/visit metrics_pid=
+visits="fetch again health curator kiosk touch" visit=$work/visit metrics_pid=
 
 is_visit() { [[ " $visits " = *" $1 "* ]]; }
 is_slow_visit() { [ "$1" = kiosk ] || [ "$1" = touch ]; }
@@ -37,6 +38,9 @@ begin_visits() {
 		--metrics "$work/metrics" >"$work/metrics.log" 2>&1 &
 	metrics_pid=$!
 	wait_for 20 "metrics" test -S "$work/metrics"
+	mkdir "$visit"
+	use_visit fetch && is_done fetch || { cat "$work/said"; fail "a full cache"; }
+	mv "$visit" "$work/full"
 }
 end_visits() { [ -z "$metrics_pid" ] || kill "$metrics_pid"; }
 
@@ -44,6 +48,7 @@ prepare_visit() {
 	begin_visits
 	rm -rf "$visit" "$work/once" "$work/left"
 	mkdir "$visit"
+	[ "$1" != again ] || cp "$work"/full/cache.db* "$visit/"
 	[ "$1" != curator ] || cp -a "$work/project" "$visit/content"
 }
 
@@ -51,6 +56,7 @@ prepare_visit() {
 use_visit() {
 	local name=$1 program=gopura-$1 command
 	shift
+	[ "$name" != again ] || name=fetch program=gopura-fetch
 	local kiosk=(build/gopura-kiosk --display headless --size 640x360 --release "$work/reference"
 		--trust "$work/reference/root/1.json" --state "$visit/state" --visits "$visit/visits.csv" --metrics "$visit/metrics"
 		--log debug)
@@ -70,7 +76,7 @@ use_visit() {
 # Whether the use's result is there, after a use that ended with 0.
 is_done() {
 	case $1 in
-	fetch) grep -q '"damaged":0' "$work/said" ;;
+	fetch | again) grep -q '"damaged":0' "$work/said" ;;
 	kiosk) grep -q '"settled": true' "$visit/views.jsonl" ;;
 	touch) grep -q 'app: page of' "$work/said" || was_late ;;
 	esac

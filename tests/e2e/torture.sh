@@ -108,7 +108,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys exchange export temple inspect verify import publish setup build fetch health curator kiosk touch}; do
+for name in ${USES:-keys exchange export temple inspect verify import publish setup build fetch again health curator kiosk touch}; do
 	all "$name" memory 12
 	all "$name" io 5  # EIO
 	all "$name" io 28 # ENOSPC

@@ -5,9 +5,11 @@
 #ifndef GOPURA_TESTS_FAULT_VFS_H
 #define GOPURA_TESTS_FAULT_VFS_H
 
+#include <errno.h>
 #include <sqlite3.h>
 #include <stdbool.h>
 #include <string.h>
+#include <unistd.h>
 
 enum fault_kind { FAULT_NONE, FAULT_FULL, FAULT_IO, FAULT_POWER_CUT, FAULT_READ };
 
@@ -17,6 +19,7 @@ static struct fault {
 	long count; /* writes that fail; 0: all later ones too */
 	long writes;
 	long reads; /* with FAULT_READ it is these that fail, and no write */
+	bool fails; /* the read that is under way */
 } fault;
 
 struct fault_file {
@@ -55,10 +58,21 @@ static int fault_close(sqlite3_file *file)
 static int fault_read(sqlite3_file *file, void *to, int size, sqlite3_int64 at)
 {
 	const long n = fault.reads++;
+	int code;
 
-	if (fault.kind == FAULT_READ && n >= fault.at && n < fault.at + fault.count)
-		return SQLITE_IOERR_READ;
-	return fault_real(file)->pMethods->xRead(fault_real(file), to, size, at);
+	fault.fails = fault.kind == FAULT_READ && n >= fault.at && n < fault.at + fault.count;
+	code = fault_real(file)->pMethods->xRead(fault_real(file), to, size, at);
+	fault.fails = false;
+	return code;
+}
+
+/* The system call itself, because what SQLite makes of its errno matters. */
+static ssize_t fault_pread(int fd, void *to, size_t size, off64_t at)
+{
+	if (!fault.fails)
+		return pread64(fd, to, size, at);
+	errno = EIO;
+	return -1;
 }
 
 static int fault_write(sqlite3_file *file, const void *from, int size, sqlite3_int64 at)
@@ -174,6 +188,10 @@ static void fault_install(void)
 	fault_vfs.xOpen = fault_open;
 	fault_vfs.xDelete = fault_delete;
 	sqlite3_vfs_register(&fault_vfs, 1);
+	fault_real_vfs->xSetSystemCall(fault_real_vfs, "pread",
+				       (sqlite3_syscall_ptr)(void *)fault_pread);
+	fault_real_vfs->xSetSystemCall(fault_real_vfs, "pread64",
+				       (sqlite3_syscall_ptr)(void *)fault_pread);
 }
 
 static void fault_set(enum fault_kind kind, long at, long count)
