@@ -289,6 +289,41 @@ void gl_draw_square(void)
 	glDisableVertexAttribArray(0);
 }
 
+/* The coordinate is used as it is interpolated: even where fragments have only mediump, hardware
+ * interpolates texture coordinates more exactly than it computes. */
+static const char copy_fragment[] = "uniform FINE sampler2D u_picture;\n"
+				    "varying vec2 v_at;\n"
+				    "void main() {\n"
+				    "	gl_FragColor = texture2D(u_picture, v_at);\n"
+				    "}\n";
+
+int gl_copy_build(GLuint *out)
+{
+	const struct gl_program_source source = {
+		.name = "copy",
+		.vertex = (const char *const[]){ gl_square_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, copy_fragment, NULL },
+		.attributes = gl_square_attributes,
+	};
+	int rc = gl_program_build(out, &source);
+
+	if (rc < 0)
+		return rc;
+	glUseProgram(*out);
+	glUniform1i(glGetUniformLocation(*out, "u_picture"), 0);
+	return 0;
+}
+
+void gl_copy_draw(GLuint program, GLuint texture)
+{
+	glDisable(GL_DEPTH_TEST);
+	glUseProgram(program);
+	gl_bind_texture(0, texture);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	gl_draw_square();
+}
+
 void gl_bind_texture(unsigned unit, GLuint texture)
 {
 	assert(unit < GL_LIMIT_UNITS);

@@ -52,13 +52,16 @@ must_check int gl_program_build(GLuint *out, const struct gl_program_source *sou
  * 0..1 to the right and up; its program is linked with gl_square_attributes. */
 extern const char gl_square_vertex[];
 extern const char *const gl_square_attributes[];
-/* Draws the viewport as two triangles with the current program; leaves attribute 0 disabled.
- *
- * llvmpipe, which draws on the processor, draws a rectangle line by line instead of fragment by
- * fragment, in a third to a sixth of the time, if the framebuffer has no depth buffer, it and the
- * texture have the order of bytes of gl_target_create, and the fragment shader does no more than
- * look up v_at through a FINE sampler (docs/picture.md). */
+/* Draws the viewport as two triangles with the current program; leaves attribute 0 disabled. */
 void gl_draw_square(void);
+
+/* Builds the program that draws a texture over the whole viewport, as it is or enlarged. As
+ * gl_program_build. */
+must_check int gl_copy_build(GLuint *out);
+/* Draws the texture with that program, without depth; leaves attributes 0 to 2 disabled. llvmpipe,
+ * which draws on the processor, takes a third to a sixth of its usual time for it on x86, if
+ * framebuffer and texture are as of gl_target_create_flat (docs/picture.md). */
+void gl_copy_draw(GLuint program, GLuint texture);
 
 struct gl_texture_options {
 	int width_px, height_px;

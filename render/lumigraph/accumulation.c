@@ -7,35 +7,13 @@
  * only delay the panel. */
 enum { PASSES_MAX = 6 };
 
-static const char square_fragment[] = "uniform FINE sampler2D u_picture;\n"
-				      "varying vec2 v_at;\n"
-				      "void main() {\n"
-				      "	gl_FragColor = texture2D(u_picture, v_at);\n"
-				      "}\n";
-
-static int build(struct accumulation *accumulation)
-{
-	const struct gl_program_source source = {
-		.name = "accumulation",
-		.vertex = (const char *const[]){ gl_square_vertex, NULL },
-		.fragment = (const char *const[]){ gl_fine_fragment, square_fragment, NULL },
-		.attributes = gl_square_attributes,
-	};
-	int rc = gl_program_build(&accumulation->program, &source);
-	if (rc < 0)
-		return rc;
-	glUseProgram(accumulation->program);
-	glUniform1i(glGetUniformLocation(accumulation->program, "u_picture"), 0);
-	return 0;
-}
-
 static int prepare_sum(struct accumulation *accumulation, int width_px, int height_px)
 {
 	if (accumulation->sum.framebuffer && accumulation->sum.width_px == width_px &&
 	    accumulation->sum.height_px == height_px)
 		return 0;
 	accumulation_finish(accumulation);
-	int rc = build(accumulation);
+	int rc = gl_copy_build(&accumulation->program);
 	return rc < 0 ? rc : gl_target_create_flat(&accumulation->sum, width_px, height_px);
 }
 
@@ -97,15 +75,6 @@ void accumulation_offset(const struct accumulation *accumulation, bool changed, 
 	*y_px = halton(index, 3) - mean_of_halton(3);
 }
 
-static void draw_square(const struct accumulation *accumulation, GLuint texture)
-{
-	glUseProgram(accumulation->program);
-	gl_bind_texture(0, texture);
-	glDisableVertexAttribArray(1);
-	glDisableVertexAttribArray(2);
-	gl_draw_square();
-}
-
 void accumulation_add(struct accumulation *accumulation, const struct gl_place *place, bool changed)
 {
 	if (changed)
@@ -117,25 +86,22 @@ void accumulation_add(struct accumulation *accumulation, const struct gl_place *
 		accumulation->count++;
 		accumulation->same++;
 		gl_target_bind(&accumulation->sum);
-		glDisable(GL_DEPTH_TEST);
 		glEnable(GL_BLEND);
 		/* Frame n has weight n: the previous picture fades out soon, and 8 bits per channel
 		 * still resolve the last frames. */
 		glBlendColor(0, 0, 0, 2.0f / (float)(before + 2));
 		glBlendFunc(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA);
-		draw_square(accumulation, accumulation->frame.colour);
+		gl_copy_draw(accumulation->program, accumulation->frame.colour);
 		glDisable(GL_BLEND);
 	}
 	gl_place_bind(place, accumulation->sum.width_px, accumulation->sum.height_px);
-	glDisable(GL_DEPTH_TEST);
-	draw_square(accumulation, accumulation->sum.colour);
+	gl_copy_draw(accumulation->program, accumulation->sum.colour);
 }
 
 void accumulation_show_frame(const struct accumulation *accumulation, const struct gl_place *place)
 {
 	gl_place_bind(place, accumulation->frame.width_px, accumulation->frame.height_px);
-	glDisable(GL_DEPTH_TEST);
-	draw_square(accumulation, accumulation->frame.colour);
+	gl_copy_draw(accumulation->program, accumulation->frame.colour);
 }
 
 bool accumulation_is_done(const struct accumulation *accumulation)
@@ -149,10 +115,9 @@ void accumulation_let_go(struct accumulation *accumulation, const struct gl_plac
 		return;
 	gl_target_destroy(&accumulation->frame);
 	gl_place_bind(place, accumulation->sum.width_px, accumulation->sum.height_px);
-	glDisable(GL_DEPTH_TEST);
 	/* Full-size passes, so that none ends before all have begun. */
 	for (int i = 0; i < PASSES_MAX; i++) {
-		draw_square(accumulation, accumulation->sum.colour);
+		gl_copy_draw(accumulation->program, accumulation->sum.colour);
 		glFlush();
 	}
 	glFinish();
