@@ -80,13 +80,11 @@ void cache_close(struct cache *cache)
 	cache->log_pages = 0;
 }
 
-/* One failed read may be the card's last word on a page or not: only many in a row are taken for
- * damage, since a new cache begins empty, perhaps far from any server. */
-static bool is_damaged(struct cache *cache, int rc, bool read_failed)
+/* Counts a failed read. Returns -EBADMSG if there were too many in a row, else -EIO: a new cache
+ * begins empty, perhaps far from any server. */
+static int count_fault(struct cache *cache)
 {
-	if (rc == -EBADMSG && !read_failed)
-		return true;
-	return (rc == -EIO || rc == -EBADMSG) && ++cache->faults >= FAULTS_MAX;
+	return ++cache->faults < FAULTS_MAX ? -EIO : -EBADMSG;
 }
 
 static int on_log(void *data, sqlite3 *db, const char *name, int pages)
@@ -155,8 +153,8 @@ static int prepare_all(struct cache *cache)
 	return 0;
 }
 
-/* damaged: whether a new one must take its place; NULL: this is the new one. */
-static int open_db(struct cache *cache, bool *damaged)
+/* -EBADMSG: damaged, a new one must take its place. */
+static int open_db(struct cache *cache)
 {
 	int rc = db_open(&cache->db, cache->path);
 	sqlite3_int64 tick = 0;
@@ -176,8 +174,8 @@ static int open_db(struct cache *cache, bool *damaged)
 		rc = -EBADMSG;
 	if (rc < 0) {
 		complain(cache, rc, "opening the cache");
-		if (damaged)
-			*damaged = is_damaged(cache, rc, db_read_failed(cache->db));
+		if (rc == -EBADMSG && db_read_failed(cache->db))
+			rc = count_fault(cache);
 		cache_close(cache);
 		return rc;
 	}
@@ -199,7 +197,7 @@ static void start_over(struct cache *cache)
 	log_warn("storage", "%s was damaged; renamed to %s.broken, and a new cache begins",
 		 cache->path, cache->path);
 	if (rc == 0)
-		rc = open_db(cache, NULL);
+		rc = open_db(cache);
 	if (rc < 0) {
 		complain(cache, rc, "beginning a new cache");
 		cache->retry_at_ms = clock_now_ms() + RETRY_MS;
@@ -218,21 +216,21 @@ int cache_judge(struct cache *cache, int rc, const char *doing)
 		cache->in_batch = false;
 		cache->batch_pages = 0;
 	}
-	if (is_damaged(cache, rc, db_read_failed(cache->db)))
+	if (rc == -EIO || (rc == -EBADMSG && db_read_failed(cache->db)))
+		rc = count_fault(cache);
+	if (rc == -EBADMSG)
 		start_over(cache);
 	return rc == -EROFS || rc == -EBUSY || rc == -EBADMSG ? -EIO : rc;
 }
 
 bool cache_ready(struct cache *cache)
 {
-	bool damaged = false;
-
 	if (cache->db)
 		return true;
 	if (clock_now_ms() < cache->retry_at_ms)
 		return false;
 	cache->retry_at_ms = clock_now_ms() + RETRY_MS;
-	if (open_db(cache, &damaged) < 0 && damaged)
+	if (open_db(cache) == -EBADMSG)
 		start_over(cache);
 	return cache->db != NULL;
 }
