@@ -18,14 +18,9 @@ static int add_group(struct finest_patches *out, struct object_store *objects, s
 		     const struct hierarchy_patch *rows)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
-	struct buffer object;
-	uint32_t count = 0;
-	int rc;
+	uint32_t count;
+	int rc = object_store_read_group(objects, name, meshes, &count);
 
-	buffer_init(&object, OBJECT_BYTES_MAX);
-	rc = object_store_read(objects, name, &object);
-	if (rc == 0)
-		rc = patch_group_decode(meshes, &count, buffer_bytes(&object));
 	if (rc == 0)
 		rc = ARRAY_RESERVE(out->meshes, out->room, out->count + count, UINT32_MAX);
 	if (rc == 0)
@@ -38,7 +33,6 @@ static int add_group(struct finest_patches *out, struct object_store *objects, s
 		out->rows[out->count] = rows[i];
 		out->meshes[out->count++] = meshes[i];
 	}
-	buffer_finish(&object);
 	return rc;
 }
 

@@ -190,6 +190,21 @@ int object_store_read_page(struct object_store *store, const struct page_child *
 	return rc < 0 ? rc : page_decode(page, buffer_bytes(bytes));
 }
 
+int object_store_read_group(struct object_store *store, struct hash hash,
+			    struct patch_mesh meshes[GROUP_PATCHES_MAX], uint32_t *count)
+{
+	struct buffer object;
+	int rc;
+
+	*count = 0;
+	buffer_init(&object, OBJECT_BYTES_MAX);
+	rc = object_store_read(store, hash, &object);
+	if (rc == 0)
+		rc = patch_group_decode(meshes, count, buffer_bytes(&object));
+	buffer_finish(&object);
+	return rc;
+}
+
 bool object_store_has(const struct object_store *store, struct hash hash)
 {
 	return map_get(&store->index, hash_key(hash)) != MAP_NONE;

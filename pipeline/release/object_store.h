@@ -4,6 +4,7 @@
 #define GOPURA_PIPELINE_RELEASE_OBJECT_STORE_H
 
 #include "format/page.h"
+#include "format/patch.h"
 
 struct object_store;
 
@@ -30,6 +31,11 @@ must_check int object_store_read(struct object_store *store, struct hash hash, s
  * *page is zeroed before. Errors of object_store_read and page_decode. */
 must_check int object_store_read_page(struct object_store *store, const struct page_child *child,
 				      struct page *page, struct buffer *bytes);
+/* Reads the *count meshes of a group of patches, which the caller finishes; 0 on failure. Errors of
+ * object_store_read and patch_group_decode. */
+must_check int object_store_read_group(struct object_store *store, struct hash hash,
+				       struct patch_mesh meshes[GROUP_PATCHES_MAX],
+				       uint32_t *count);
 /* Returns true if the store has the object. */
 bool object_store_has(const struct object_store *store, struct hash hash);
 

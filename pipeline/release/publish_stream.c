@@ -89,14 +89,9 @@ static int add_group(struct soup *soup, struct object_store *objects, struct has
 		     const struct hierarchy_patch *patches, uint32_t group_count, uint32_t room)
 {
 	struct patch_mesh meshes[GROUP_PATCHES_MAX];
-	struct buffer object;
-	uint32_t count = 0;
-	int rc;
+	uint32_t count;
+	int rc = object_store_read_group(objects, name, meshes, &count);
 
-	buffer_init(&object, OBJECT_BYTES_MAX);
-	rc = object_store_read(objects, name, &object);
-	if (rc == 0)
-		rc = patch_group_decode(meshes, &count, buffer_bytes(&object));
 	for (uint32_t i = 0; i < count; i++) {
 		const uint32_t corners = 3 * meshes[i].triangle_count;
 
@@ -108,7 +103,6 @@ static int add_group(struct soup *soup, struct object_store *objects, struct has
 		}
 		patch_mesh_finish(&meshes[i]);
 	}
-	buffer_finish(&object);
 	return rc;
 }
 
