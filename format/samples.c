@@ -248,6 +248,15 @@ uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column)
 	return index;
 }
 
+uint32_t face_tile_level(uint32_t index)
+{
+	uint32_t level = 0;
+
+	while (index >= face_tile_index(level + 1, 0, 0))
+		level++;
+	return level;
+}
+
 void face_tile_place(uint32_t level, uint32_t index, uint32_t *row, uint32_t *column)
 {
 	index -= face_tile_index(level, 0, 0);

@@ -94,6 +94,8 @@ must_check int face_page_decode(struct face_page *out, struct bytes payload);
  * order (the bits of row and column interleaved). So tiles that are near each other on the face are
  * near in the pack, and the tiles of a view lie in few byte ranges. */
 uint32_t face_tile_index(uint32_t level, uint32_t row, uint32_t column);
+/* Returns the level of the tile with that index. */
+uint32_t face_tile_level(uint32_t index);
 /* The inverse: sets row and column of the tile with that index. level must be the level of the
  * index. */
 void face_tile_place(uint32_t level, uint32_t index, uint32_t *row, uint32_t *column);

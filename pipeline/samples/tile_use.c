@@ -16,7 +16,6 @@
 enum {
 	SPOTS = 2048,
 	VIEWS = 256,
-	POINTS_BEST = 12, /* as in plan.c */
 };
 
 /* Pixels for each of the finest level, at the middle of face and picture: a panel of 1080 rows and
@@ -214,7 +213,7 @@ struct ranked {
 	float quality;
 };
 
-static uint32_t rank(struct ranked ranked[POINTS_BEST], const struct use *use,
+static uint32_t rank(struct ranked ranked[PLAN_POINTS_BEST], const struct use *use,
 		     const struct plan_eye *eye, const struct spot *spot)
 {
 	const float half_px = plan_level_half_px(use->grid->level_count - 1);
@@ -226,9 +225,10 @@ static uint32_t rank(struct ranked ranked[POINTS_BEST], const struct use *use,
 						   half_px, error_m);
 		uint32_t at = count;
 
-		if (quality <= 0 || (count == POINTS_BEST && ranked[count - 1].quality >= quality))
+		if (quality <= 0 ||
+		    (count == PLAN_POINTS_BEST && ranked[count - 1].quality >= quality))
 			continue;
-		if (count < POINTS_BEST)
+		if (count < PLAN_POINTS_BEST)
 			count++;
 		else
 			at--;
@@ -244,7 +244,7 @@ static uint32_t rank(struct ranked ranked[POINTS_BEST], const struct use *use,
 static void colour_spot(struct use *use, const struct plan_eye *eye, uint32_t n, double pixels)
 {
 	const struct spot *spot = &use->spots[n];
-	struct ranked ranked[POINTS_BEST];
+	struct ranked ranked[PLAN_POINTS_BEST];
 	const uint32_t count = rank(ranked, use, eye, spot);
 
 	for (uint32_t i = 0; i < count; i++) {
@@ -301,16 +301,6 @@ static void find_points(struct use *use)
 	}
 }
 
-/* tile: face_tile_index. */
-static uint32_t level_of(uint16_t tile)
-{
-	uint32_t level = 0, end = 1;
-
-	while (tile >= end)
-		end += 1u << (2 * ++level);
-	return level;
-}
-
 static uint32_t face_of(const struct use *use, const struct sample_face *face)
 {
 	return sample_grid_number(use->grid, face->point) * CUBE_FACES + (uint32_t)face->face;
@@ -330,8 +320,8 @@ static int count_windows(struct use *use, struct samples_store *store, uint32_t 
 		use->exists[number] = true;
 		*tiles += face.tile_count;
 		for (uint32_t i = 0; i < face.tile_count; i++)
-			use->windows[number * use->grid->level_count + level_of(face.tiles[i])] +=
-				face.windows[i];
+			use->windows[number * use->grid->level_count +
+				     face_tile_level(face.tiles[i])] += face.windows[i];
 	}
 	samples_store_rewind(store);
 	return rc;
@@ -352,7 +342,7 @@ static int weigh(const struct use *use, struct samples_store *store, float *out)
 	while ((rc = samples_store_next(store, &face)) == 1)
 		for (uint32_t i = 0; i < face.tile_count; i++) {
 			const uint32_t of = face_of(use, &face) * use->grid->level_count +
-					    level_of(face.tiles[i]);
+					    face_tile_level(face.tiles[i]);
 			double weight = 1;
 
 			if (pixels > 0)

@@ -9,10 +9,9 @@
 #include "render/plan/plan_quality.h"
 
 enum {
-	POINTS_BEST = 12,    /* best points considered for a piece */
 	POINTS_RESIDENT = 6, /* further ones, among points with tiles on the GPU */
 	POINTS_ENOUGH = 3,   /* points that see all of the piece, after which ray tests stop */
-	CANDIDATES_MAX = 2 * (POINTS_BEST + POINTS_RESIDENT),
+	CANDIDATES_MAX = 2 * (PLAN_POINTS_BEST + POINTS_RESIDENT),
 };
 
 /* Below these gains a further face or fetch is not worth its cost. */
@@ -55,8 +54,8 @@ struct candidate {
 };
 
 struct ranked {
-	uint32_t point[POINTS_BEST + POINTS_RESIDENT];
-	float quality[POINTS_BEST + POINTS_RESIDENT];
+	uint32_t point[PLAN_POINTS_BEST + POINTS_RESIDENT];
+	float quality[PLAN_POINTS_BEST + POINTS_RESIDENT];
 	uint32_t count;
 };
 
@@ -120,7 +119,7 @@ static void rank_points(struct ranked *ranked, const struct plan_world *world,
 {
 	ranked->count = 0;
 	for (uint32_t point = 0; point < world->repository->point_count; point++)
-		rank(ranked, 0, POINTS_BEST, point, point_quality(world, eye, surface, point));
+		rank(ranked, 0, PLAN_POINTS_BEST, point, point_quality(world, eye, surface, point));
 	uint32_t from = ranked->count;
 	for (uint32_t i = 0; i < world->resident_count; i++) {
 		uint32_t point = world->resident[i] / CUBE_FACES;

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+enum { PLAN_POINTS_BEST = 12 }; /* sampling points that are considered for a piece, the best */
+
 struct plan_eye {
 	float eye_m[3];
 	float focal_px;

@@ -179,9 +179,8 @@ static int level_at(void *data, face_key face, float u, float v)
 	return tiles_level_at(&scene->tiles, face, u, v);
 }
 
-static bool sees(void *data, const float sample_m[3], const float point_m[3])
+bool scene_sees(const struct scene *scene, const float sample_m[3], const float point_m[3])
 {
-	const struct scene *scene = data;
 	float to[3];
 	vec_sub(to, point_m, sample_m);
 	float distance = vec_normalise(to);
@@ -190,6 +189,11 @@ static bool sees(void *data, const float sample_m[3], const float point_m[3])
 	if (most <= 0)
 		return true;
 	return !geometry_blocks(&scene->geometry, &scene->cut, sample_m, to, most);
+}
+
+static bool sees(void *data, const float sample_m[3], const float point_m[3])
+{
+	return scene_sees(data, sample_m, point_m);
 }
 
 /* Returns a sum that changes when a tile of a wanted face comes or goes. */

@@ -17,6 +17,9 @@ void scene_list_pieces(struct scene *scene);
 void scene_plan_pieces(struct scene *scene, int64_t budget_us);
 /* Moves the weights of the blends towards what was chosen. */
 void scene_fade_blends(struct scene *scene, float passed_ms);
+/* Returns whether the shown surface leaves the sight between a sampling point and a point of itself
+ * free. */
+bool scene_sees(const struct scene *scene, const float sample_m[3], const float point_m[3]);
 /* Returns the geometric error of a patch against the scan, metres. */
 float scene_patch_error_m(const struct scene *scene, uint32_t patch);
 

@@ -49,11 +49,10 @@ static void take_face(const struct sample_face *face)
 	check(ARRAY_RESERVE(tiles, tile_room, tile_count + face->tile_count, UINT32_MAX), "tiles");
 	for (uint32_t i = 0; i < face->tile_count; i++) {
 		struct tile *tile = &tiles[tile_count];
-		uint32_t level = 0, end = 1, row, column;
+		const uint32_t level = face_tile_level(face->tiles[i]);
+		uint32_t row, column;
 		struct tile_name name;
 
-		while (face->tiles[i] >= end)
-			end += 1u << (2 * ++level);
 		face_tile_place(level, face->tiles[i], &row, &column);
 		name = (struct tile_name){ .face = point * CUBE_FACES + (uint32_t)face->face,
 					   .level = (uint8_t)level,

@@ -43,15 +43,6 @@ static int add(struct shown *shown, uint64_t name, double pixels)
 	return rc;
 }
 
-static bool is_hidden(const struct scene *scene, const float sample_m[3], const float point_m[3])
-{
-	float to[3], most_m;
-
-	vec_sub(to, point_m, sample_m);
-	most_m = vec_normalise(to) * 0.985f - 2.5f * depth_slack_m(&scene->depth);
-	return most_m > 0 && geometry_blocks(&scene->geometry, &scene->cut, sample_m, to, most_m);
-}
-
 static int place_of(float share, int side)
 {
 	const int place = (int)(share * (float)side);
@@ -75,7 +66,7 @@ static double weigh(uint64_t *name, const struct shown *shown, const struct blen
 	if (cube_project(to, &u, &v) != (int)(blend->face % CUBE_FACES))
 		return 0;
 	level = tiles_level_at(&scene->tiles, blend->face, u, v);
-	if (level < 0 || is_hidden(scene, sample_m, probe->at_m))
+	if (level < 0 || !scene_sees(scene, sample_m, probe->at_m))
 		return 0;
 	side = 1 << level;
 	*name = tile_name_pack(
