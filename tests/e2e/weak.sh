@@ -3,7 +3,7 @@
 # boards lack (tests/tools/weak_gl.c), all of it together. No call is rejected, every view settles, and the pictures stay
 # above a minimum quality.
 #
-#   LIMITS="size units mediump rgba8 index depth24"  of these each alone as well
+#   LIMITS="size units mediump rgba8 index depth24 bgra"  of these each alone as well
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -27,7 +27,8 @@ probes mediump highp
 probes rgba8 rgba8
 probes index 'wide indices'
 probes depth24 depth24
-probes all 'large texture' 'large renderbuffer' 'ninth unit' highp rgba8 'wide indices' depth24
+probes bgra bgra
+probes all 'large texture' 'large renderbuffer' 'ninth unit' highp rgba8 'wide indices' depth24 bgra
 build/tests/tools/weak_probe >"$work/probe"
 ! grep -v '^more than' "$work/probe" | grep 'refused$' || skip "this driver has not what is to be taken away"
 grep '^more than' "$work/probe-mediump"

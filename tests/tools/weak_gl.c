@@ -8,6 +8,7 @@
  *   rgba8    no GL_OES_rgb8_rgba8: renderbuffers of RGBA4, RGB565, RGB5_A1 and depth
  *   index    no GL_OES_element_index_uint: indices of at most 16 bits
  *   depth24  no GL_OES_depth24: 16 bits of depth
+ *   bgra     no GL_EXT_texture_format_BGRA8888: textures in no order of bytes but RGBA
  *   all      all of them
  *
  * At exit it writes a line of JSON to the file that WEAK_GL_REPORT names: how often something was
@@ -100,6 +101,7 @@ static const char *hidden_by(const char *limit)
 		{ "rgba8", "GL_ARM_rgba8" },
 		{ "index", "GL_OES_element_index_uint" },
 		{ "depth24", "GL_OES_depth24" },
+		{ "bgra", "GL_EXT_texture_format_BGRA8888" },
 	};
 	for (size_t i = 0; i < sizeof(table) / sizeof(table[0]); i++)
 		if (strcmp(table[i][1], limit) == 0)
@@ -166,6 +168,7 @@ GL_APICALL void GL_APIENTRY glGetShaderPrecisionFormat(GLenum kind, GLenum preci
 static size_t bytes_of(GLsizei width, GLsizei height, GLenum format, GLenum type)
 {
 	size_t pixel = format == GL_RGBA              ? 4
+		       : format == GL_BGRA_EXT        ? 4
 		       : format == GL_RGB             ? 3
 		       : format == GL_LUMINANCE_ALPHA ? 2
 						      : 1;
@@ -207,6 +210,10 @@ GL_APICALL void GL_APIENTRY glTexImage2D(GLenum target, GLint level, GLint inter
 	}
 	if ((GLenum)internal != format) { /* GLES2 knows no sized formats */
 		refuse(GL_INVALID_OPERATION, "a texture of that format", internal, (int)format);
+		return;
+	}
+	if (holds("bgra") && format == GL_BGRA_EXT) {
+		refuse(GL_INVALID_ENUM, "a texture of BGRA", width, height);
 		return;
 	}
 	if (level == 0)

@@ -17,17 +17,18 @@ static bool no_error(void)
 	return none;
 }
 
-static bool gives_texture(void)
+static bool gives_texture(GLenum format, int width_px)
 {
 	GLuint name;
 	GLint most = 0;
 	glGenTextures(1, &name);
 	glBindTexture(GL_TEXTURE_2D, name);
-	glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, LARGE_PX, 8, 0, GL_RGBA, GL_UNSIGNED_BYTE, NULL);
+	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)format, width_px, 8, 0, format, GL_UNSIGNED_BYTE,
+		     NULL);
 	bool given = no_error();
 	glDeleteTextures(1, &name);
 	glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-	return given && most >= LARGE_PX;
+	return given && most >= width_px;
 }
 
 /* Whether a framebuffer stands on it. */
@@ -122,7 +123,7 @@ int main(void)
 	struct headless *headless;
 	if (headless_create(&headless) < 0)
 		return EXIT_FAILURE;
-	say("large texture", gives_texture());
+	say("large texture", gives_texture(GL_RGBA, LARGE_PX));
 	say("large renderbuffer",
 	    gives_renderbuffer(GL_DEPTH_COMPONENT16, GL_DEPTH_ATTACHMENT, LARGE_PX));
 	say("ninth unit", gives_unit());
@@ -131,6 +132,8 @@ int main(void)
 	say("rgba8", gives_renderbuffer(GL_RGBA8_OES, GL_COLOR_ATTACHMENT0, 8));
 	say("wide indices", gives_wide_indices());
 	say("depth24", gives_renderbuffer(GL_DEPTH_COMPONENT24_OES, GL_DEPTH_ATTACHMENT, 8));
+	say("bgra",
+	    gives_texture(GL_BGRA_EXT, 8) && gl_has_extension("GL_EXT_texture_format_BGRA8888"));
 	headless_destroy(headless);
 	return EXIT_SUCCESS;
 }
