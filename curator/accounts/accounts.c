@@ -44,6 +44,15 @@ static const char *text_of(const cJSON *object, const char *key)
 	return cJSON_IsString(item) ? item->valuestring : "";
 }
 
+/* An argon2id string as libsodium writes it, or none. Others could not be printed again. */
+static bool is_hash(const char *text)
+{
+	static const char letters[] = "$,=+/0123456789abcdefghijklmnopqrstuvwxyz"
+				      "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+
+	return strlen(text) < ACCOUNT_HASH_BYTES && text[strspn(text, letters)] == '\0';
+}
+
 static int parse_account(struct accounts *accounts, const cJSON *row,
 			 struct diagnostics *diagnostics)
 {
@@ -54,7 +63,7 @@ static int parse_account(struct accounts *accounts, const cJSON *row,
 	if (role_parse(&role, text_of(row, "role")) < 0)
 		return diagnostics_add(diagnostics, -EBADMSG, file_name, 0,
 				       "an account has no role: it is reader, editor or publisher");
-	if (strlen(hash) >= ACCOUNT_HASH_BYTES)
+	if (!is_hash(hash))
 		return diagnostics_add(diagnostics, -EBADMSG, file_name, 0,
 				       "a password is not one that 'gopura-curator user' wrote");
 	rc = accounts_add(accounts, name, role);

@@ -98,6 +98,8 @@ static void refuses_a_file_that_is_not_its_own(void **state)
 		"{\"accounts\": [{\"role\": \"editor\"}]}",
 		"{\"accounts\": [{\"name\": \"a\", \"role\": \"editor\"}, "
 		"{\"name\": \"a\", \"role\": \"reader\"}]}",
+		"{\"accounts\": [{\"name\": \"a\", \"role\": \"editor\", \"password\": \"\\\\\"}]}",
+		"{\"accounts\": [{\"name\": \"a\", \"role\": \"editor\", \"password\": \"\\\"\"}]}",
 	};
 
 	(void)state;
