@@ -47,8 +47,9 @@ struct downloader {
 	struct want_set wants;
 	struct locators locators;
 	struct ranges ranges;
-	bool plan_changed;   /* something may be requested that could not be before */
-	int64_t plan_due_ms; /* when the first retry pause ends; INT64_MAX: no want is pausing */
+	bool plan_changed;    /* something may be requested that could not be before */
+	int64_t stick_due_ms; /* when the stick is asked again for a want; INT64_MAX: for none */
+	int64_t plan_due_ms;  /* when the first retry pause ends; INT64_MAX: no want is pausing */
 	struct range_item *items; /* scratch memory for planning */
 	uint32_t item_room;
 	struct buffer scratch; /* holds one object read from the cache */
@@ -309,6 +310,37 @@ static void note_damage_on_stick(struct downloader *downloader, struct hash hash
 		log_warn("net", "object %s from the stick is damaged", hex);
 }
 
+/* Where no server answers, nobody else has the object. */
+static void ask_stick_later(struct downloader *downloader, struct want *want)
+{
+	want->stick_at_ms = clock_now_ms() + link_pause_ms(++want->stick_failures);
+	if (want->stick_at_ms < downloader->stick_due_ms)
+		downloader->stick_due_ms = want->stick_at_ms;
+}
+
+static void ask_stick_again(struct downloader *downloader)
+{
+	const int64_t now_ms = clock_now_ms();
+	struct want *want;
+	size_t at = 0;
+
+	if (downloader->stick_due_ms > now_ms)
+		return;
+	downloader->stick_due_ms = INT64_MAX;
+	while ((want = want_set_next(&downloader->wants, &at))) {
+		if (want->state != WANT_WAITING || want->stick_at_ms == 0)
+			continue;
+		if (want->stick_at_ms <= now_ms) {
+			want->stick_at_ms = 0;
+			if (want_set_requeue(&downloader->wants, want) == 0)
+				continue;
+			want->stick_at_ms = now_ms + NO_MEMORY_MS;
+		}
+		if (want->stick_at_ms < downloader->stick_due_ms)
+			downloader->stick_due_ms = want->stick_at_ms;
+	}
+}
+
 void downloader_stick_answered(struct downloader *downloader, struct hash hash, int rc,
 			       struct bytes bytes)
 {
@@ -319,6 +351,8 @@ void downloader_stick_answered(struct downloader *downloader, struct hash hash, 
 	if (!want || want->state != WANT_ON_STICK)
 		return;
 	if (rc < 0) {
+		if (rc != -ENOENT && rc != -EBADMSG)
+			ask_stick_later(downloader, want);
 		wait_for_server(downloader, want);
 		return;
 	}
@@ -582,6 +616,7 @@ void downloader_work(struct downloader *downloader)
 	if (downloader->held_bytes > 0 &&
 	    fits_turn(downloader, downloader->held_priority, downloader->held_bytes))
 		downloader->plan_changed = true;
+	ask_stick_again(downloader);
 	look_up_queued(downloader);
 	locators_work(&downloader->locators);
 	report_link(downloader);
@@ -620,7 +655,8 @@ int64_t downloader_due_ms(const struct downloader *downloader)
 			plan_ms = token_bucket_due_ms(&downloader->rate_limit);
 		due_ms = plan_ms < due_ms ? plan_ms : due_ms;
 	}
-	return link_due_ms(link, due_ms);
+	due_ms = link_due_ms(link, due_ms);
+	return downloader->stick_due_ms < due_ms ? downloader->stick_due_ms : due_ms;
 }
 
 uint32_t downloader_wanted(const struct downloader *downloader)
@@ -656,6 +692,7 @@ int downloader_create(struct downloader **out, const struct downloader_options *
 	if (!downloader)
 		return -ENOMEM;
 	downloader->options = *options;
+	downloader->stick_due_ms = INT64_MAX;
 	downloader->plan_due_ms = INT64_MAX;
 	token_bucket_init(&downloader->rate_limit, options->rate_limit);
 	line_rate_init(&downloader->line, FIRST_BYTES_PER_S);

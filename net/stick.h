@@ -18,7 +18,8 @@ struct stick_options {
 	/* Metadata of a stick that was plugged in; not checked. Bytes are borrowed for the call. */
 	void (*meta)(void *data, enum meta_role role, uint32_t version, struct bytes bytes);
 	/* The answer to stick_request; bytes are borrowed. rc 0: the bytes are correct. -ENOENT:
-	 * the object is not there. -EBADMSG: it is there, but damaged. */
+	 * the object is not there. -EBADMSG: it is there, but damaged. Another errno: it could not
+	 * be read now. */
 	void (*object)(void *data, struct hash hash, int rc, struct bytes bytes);
 	/* The answer to stick_ask_file; everything in *file is borrowed for the call. */
 	void (*file)(void *data, const struct message_file *file);

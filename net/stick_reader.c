@@ -14,6 +14,7 @@
 enum {
 	LOCATOR_BYTES_MAX = 64 << 20,
 	NAME_BYTES = MESSAGE_NAME_MAX + 16,
+	LOOKS_AGAIN_MAX = 16,
 };
 
 int stick_reader_init(struct stick_reader *reader, const char *folder)
@@ -49,10 +50,24 @@ void stick_reader_finish(struct stick_reader *reader)
 
 void stick_reader_forget(struct stick_reader *reader)
 {
-	buffer_clear(&reader->stamp);
+	reader->reports_again = true;
 }
 
 /* ---- files */
+
+/* Returns whether a failure says nothing of the stick's content, so that the next try may work. */
+static bool may_pass(int rc)
+{
+	return rc == -ENOMEM || rc == -EIO || rc == -EINTR || rc == -EAGAIN || rc == -EMFILE ||
+	       rc == -ENFILE;
+}
+
+/* Makes the next look report everything again if a failure may pass, a few times a stick. */
+static void look_again(struct stick_reader *reader, int rc)
+{
+	if (may_pass(rc) && reader->looks_again++ < LOOKS_AGAIN_MAX)
+		stick_reader_forget(reader);
+}
 
 static int open_file(const struct stick_reader *reader, const char *name)
 {
@@ -98,8 +113,8 @@ static int read_stamp(struct stick_reader *reader, bool tuf)
 /* ---- metadata */
 
 /* Appends the file that was read last to the list. */
-static void add_file(const struct stick_reader *reader, struct stick_file *files, size_t *count,
-		     enum meta_role role, uint32_t version)
+static int add_file(const struct stick_reader *reader, struct stick_file *files, size_t *count,
+		    enum meta_role role, uint32_t version)
 {
 	struct stick_file *file = &files[*count];
 
@@ -108,25 +123,34 @@ static void add_file(const struct stick_reader *reader, struct stick_file *files
 	buffer_put(&file->bytes, reader->file.data, reader->file.size);
 	if (!file->bytes.error)
 		++*count;
+	return file->bytes.error;
 }
 
-static void read_all(struct stick_reader *reader, uint32_t root_version, struct stick_file *files,
-		     size_t *count)
+/* Returns 0, or the last failure that may pass. */
+static int read_all(struct stick_reader *reader, uint32_t root_version, struct stick_file *files,
+		    size_t *count)
 {
 	const bool tuf = root_version == MESSAGE_TRUST_TUF;
 	char name[NAME_BYTES];
+	int rc = 0, worst = 0;
 
-	for (uint32_t i = 1; i <= STICK_ROOTS_MAX && !tuf; i++) {
+	for (uint32_t i = 1; rc == 0 && i <= STICK_ROOTS_MAX && !tuf; i++) {
 		snprintf(name, sizeof(name), "root/%u.json", root_version + i);
-		if (read_file(reader, name, MESSAGE_META_BYTES_MAX) < 0)
-			break;
-		add_file(reader, files, count, META_ROOT, root_version + i);
+		rc = read_file(reader, name, MESSAGE_META_BYTES_MAX);
+		if (rc == 0)
+			rc = add_file(reader, files, count, META_ROOT, root_version + i);
 	}
+	worst = may_pass(rc) ? rc : 0;
 	buffer_clear(&reader->file);
 	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
-	add_file(reader, files, count, META_TIMESTAMP, 0);
-	if (!tuf && read_file(reader, "release.json", MESSAGE_META_BYTES_MAX) == 0)
-		add_file(reader, files, count, META_RELEASE, 0);
+	rc = reader->file.error;
+	if (rc == 0)
+		rc = add_file(reader, files, count, META_TIMESTAMP, 0);
+	worst = may_pass(rc) ? rc : worst;
+	rc = tuf ? 0 : read_file(reader, "release.json", MESSAGE_META_BYTES_MAX);
+	if (rc == 0 && !tuf)
+		rc = add_file(reader, files, count, META_RELEASE, 0);
+	return may_pass(rc) ? rc : worst;
 }
 
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
@@ -138,15 +162,19 @@ enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_v
 	if (read_stamp(reader, tuf) < 0) {
 		close_files(reader); /* open files would prevent unmounting */
 		buffer_clear(&reader->stamp);
+		reader->looks_again = 0;
 		return STICK_REMOVED;
 	}
-	if (reader->stamp.size == reader->file.size &&
+	if (!reader->reports_again && reader->stamp.size == reader->file.size &&
 	    memcmp(reader->stamp.data, reader->file.data, reader->file.size) == 0)
 		return STICK_UNCHANGED;
 	close_files(reader);
 	buffer_clear(&reader->stamp);
 	buffer_put(&reader->stamp, reader->file.data, reader->file.size);
-	read_all(reader, root_version, files, count);
+	if (reader->stamp.error)
+		return STICK_REMOVED; /* until there is memory for it */
+	reader->reports_again = false;
+	look_again(reader, read_all(reader, root_version, files, count));
 	return STICK_INSERTED;
 }
 
@@ -161,30 +189,44 @@ enum file_answer stick_reader_file(struct stick_reader *reader, const char *name
 		rc = read_file(reader, path, out->ceiling);
 	if (rc == 0)
 		buffer_put(out, reader->file.data, reader->file.size);
-	if (rc == 0 && !out->error)
+	if (rc == 0)
+		rc = out->error;
+	if (rc == 0)
 		return FILE_IS_HERE;
+	look_again(reader, rc);
 	return rc == -EFBIG ? FILE_TOO_LARGE : FILE_NOT_THERE;
 }
 
 /* ---- objects */
 
-static const struct stick_release *release_of(struct stick_reader *reader, struct hash root)
+/* Sets *out to what the stick has of a release; a locator that is missing or damaged is remembered.
+ * Returns 0, or a failure that may pass. */
+static int release_of(struct stick_reader *reader, struct hash root,
+		      const struct stick_release **out)
 {
 	char name[NAME_BYTES] = "locator/";
 	struct stick_release *release;
+	int rc;
 
 	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++)
-		if (hash_equal(reader->releases[i].root, root))
-			return &reader->releases[i];
-	release = &reader->releases[reader->next_release++ % MESSAGE_RELEASES_MAX];
+		if (hash_equal(reader->releases[i].root, root)) {
+			*out = &reader->releases[i];
+			return 0;
+		}
+	*out = release = &reader->releases[reader->next_release++ % MESSAGE_RELEASES_MAX];
 	locator_finish(&release->locator);
-	*release = (struct stick_release){ .root = root };
+	*release = (struct stick_release){ 0 };
 	hash_to_hex(root, name + strlen(name));
-	release->readable = read_file(reader, name, LOCATOR_BYTES_MAX) == 0 &&
-			    locator_decode(&release->locator, buffer_bytes(&reader->file)) == 0;
+	rc = read_file(reader, name, LOCATOR_BYTES_MAX);
+	if (rc == 0)
+		rc = locator_decode(&release->locator, buffer_bytes(&reader->file));
 	buffer_finish(&reader->file); /* it may have been large */
 	buffer_init(&reader->file, LOCATOR_BYTES_MAX);
-	return release;
+	if (may_pass(rc))
+		return rc;
+	release->root = root;
+	release->readable = rc == 0;
+	return 0;
 }
 
 static int open_pack(struct stick_reader *reader, struct hash pack)
@@ -198,26 +240,31 @@ static int open_pack(struct stick_reader *reader, struct hash pack)
 	hash_to_hex(pack, name + strlen(name));
 	reader->pack = pack;
 	reader->pack_fd = open_file(reader, name);
-	return reader->pack_fd < 0 ? -ENOENT : 0;
+	return reader->pack_fd < 0 ? reader->pack_fd : 0;
 }
 
 static int get_of(struct stick_reader *reader, struct hash root, const struct message_want *want,
 		  struct buffer *out)
 {
-	const struct stick_release *release = release_of(reader, root);
-	const struct locator_block *block =
-		release->readable ? locator_find(&release->locator, want->page) : NULL;
+	const struct stick_release *release;
+	const struct locator_block *block;
 	uint8_t *to;
+	int rc = release_of(reader, root, &release);
 
+	if (rc < 0)
+		return rc;
+	block = release->readable ? locator_find(&release->locator, want->page) : NULL;
 	if (!block || (uint64_t)want->offset + want->size > block->size ||
-	    (hash_is_zero(want->page) && !hash_equal(want->hash, root)) ||
-	    open_pack(reader, release->locator.packs[block->pack]) < 0)
+	    (hash_is_zero(want->page) && !hash_equal(want->hash, root)))
 		return -ENOENT;
 	buffer_clear(out);
 	to = buffer_extend(out, want->size);
-	if (!to || bytes_read_at(reader->pack_fd, to, want->size,
-				 (uint64_t)block->offset + want->offset) < 0)
-		return -ENOENT;
+	rc = to ? open_pack(reader, release->locator.packs[block->pack]) : out->error;
+	if (rc == 0)
+		rc = bytes_read_at(reader->pack_fd, to, want->size,
+				   (uint64_t)block->offset + want->offset);
+	if (rc < 0)
+		return may_pass(rc) ? rc : -ENOENT;
 	return hash_equal(hash_of(buffer_bytes(out)), want->hash) ? 0 : -EBADMSG;
 }
 

@@ -19,10 +19,12 @@ struct stick_release {
 };
 
 struct stick_reader {
-	const char *folder;  /* owned */
-	const char *below;   /* subfolder of the release: "" or "release/" */
-	struct buffer stamp; /* the timestamp as last reported; empty: no stick */
-	struct buffer file;  /* the file that was read last */
+	const char *folder;   /* owned */
+	const char *below;    /* subfolder of the release: "" or "release/" */
+	struct buffer stamp;  /* the timestamp as last reported; empty: no stick */
+	bool reports_again;   /* at the next look */
+	uint32_t looks_again; /* how often that was for a failure that may pass */
+	struct buffer file;   /* the file that was read last */
 	struct stick_release releases[MESSAGE_RELEASES_MAX];
 	size_t next_release; /* slot to be overwritten next */
 	struct hash pack;    /* the pack that is open */
@@ -45,7 +47,8 @@ void stick_reader_finish(struct stick_reader *reader); /* A zeroed struct is fin
 /* Makes the next look report everything again. */
 void stick_reader_forget(struct stick_reader *reader);
 /* Looks for a stick. On STICK_INSERTED, files[0 .. *count) holds what to report, in this order; the
- * caller owns their buffers. Roots are those after root_version; with MESSAGE_TRUST_TUF there is
+ * caller owns their buffers. What could not be read now is reported at the next look, with the
+ * rest. Roots are those after root_version; with MESSAGE_TRUST_TUF there is
  * tuf/timestamp.json alone. */
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
 				    struct stick_file files[STICK_FILES_MAX], size_t *count);
@@ -56,7 +59,7 @@ enum file_answer stick_reader_file(struct stick_reader *reader, const char *name
 
 /* Reads a wanted object into *out, at the place given by the locator of one of these releases
  * (tried in order). -ENOENT: it is not there. -EBADMSG: it is there, but the bytes do not match the
- * hash. */
+ * hash. -EIO, -ENOMEM and others: it could not be read now. */
 must_check int stick_reader_get(struct stick_reader *reader, const struct hash *roots, size_t count,
 				const struct message_want *want, struct buffer *out);
 

@@ -19,12 +19,14 @@ enum want_state {
 struct want {
 	struct message_want asked;
 	enum want_state state;
-	uint64_t order;            /* order of arrival; a lower one came earlier */
-	uint32_t failures;         /* answers in a row without the object, or with wrong bytes */
-	uint32_t damages;          /* how many of these had wrong bytes */
-	int64_t retry_at_ms;       /* in state WANT_WAITING (clock_now_ms) */
-	int reported;              /* enum missing_reason that the kiosk knows of; -1: none */
-	bool removed;              /* no longer wanted, but still in the queue */
+	uint64_t order;          /* order of arrival; a lower one came earlier */
+	uint32_t failures;       /* answers in a row without the object, or with wrong bytes */
+	uint32_t damages;        /* how many of these had wrong bytes */
+	int64_t retry_at_ms;     /* in state WANT_WAITING (clock_now_ms) */
+	uint32_t stick_failures; /* how often the stick could not be read for it */
+	int64_t stick_at_ms;     /* when the stick is asked again if it still waits; 0: it is not */
+	int reported;            /* enum missing_reason that the kiosk knows of; -1: none */
+	bool removed;            /* no longer wanted, but still in the queue */
 	struct segments *segments; /* owned; NULL: its object is requested as a whole */
 	uint32_t in_flight;        /* range requests that carry it, or a segment of it */
 };

@@ -25,6 +25,21 @@ struct stage {
 	enum missing_reason reason;
 };
 
+/* A stick that may be there, and is asked so often. */
+static struct {
+	bool is_there;
+	int requests;
+} stick;
+
+bool stick_request(struct stick *reader, const struct hash *roots, size_t count,
+		   const struct message_want *asked)
+{
+	(void)reader;
+	CHECK(count == 0 || !hash_is_zero(roots[0]));
+	stick.requests += stick.is_there && asked->size == OBJECT_BYTES;
+	return stick.is_there;
+}
+
 static void on_object(void *data, struct hash hash, struct bytes bytes)
 {
 	struct stage *stage = data;
@@ -71,6 +86,7 @@ static int set_up(void **state)
 
 	*state = stage;
 	memset(&server, 0, sizeof(server));
+	memset(&stick, 0, sizeof(stick));
 	server.now_ms = 1000;
 	snprintf(stage->folder, sizeof(stage->folder), "/tmp/gopura-download-XXXXXX");
 	CHECK(mkdtemp(stage->folder));
@@ -567,6 +583,44 @@ static void waits_while_the_server_is_away(void **state)
 	CHECK(server.count == before + 3); /* and all the others follow */
 }
 
+/* A stick that was pushed, or a moment without memory, must not cost a terminal without a server
+ * its pictures. */
+static void asks_the_stick_again_when_it_could_not_be_read(void **state)
+{
+	struct stage *stage = *state;
+	const struct bytes bytes = { stage->pack, OBJECT_BYTES };
+
+	begin(stage);
+	stick.is_there = true;
+	stage->link.failures = 9; /* no server answers */
+	stage->link.retry_at_ms = INT64_MAX;
+	want(stage, 0, 5);
+	downloader_work(stage->downloader);
+	CHECK(stick.requests == 1);
+	for (int n = 2; n < 12; n++) {
+		downloader_stick_answered(stage->downloader, stage->names[0], -EIO,
+					  (struct bytes){ NULL, 0 });
+		downloader_work(stage->downloader);
+		CHECK(stick.requests == n - 1);
+		CHECK(downloader_due_ms(stage->downloader) > server.now_ms &&
+		      downloader_due_ms(stage->downloader) <= server.now_ms + 100000);
+		server.now_ms = downloader_due_ms(stage->downloader);
+		downloader_work(stage->downloader);
+		CHECK(stick.requests == n);
+	}
+	downloader_stick_answered(stage->downloader, stage->names[0], 0, bytes);
+	CHECK(stage->objects == 1 && hash_equal(stage->last, stage->names[0]));
+	/* What the stick does not have is the server's. */
+	want(stage, 1, 5);
+	downloader_work(stage->downloader);
+	CHECK(stick.requests == 12);
+	downloader_stick_answered(stage->downloader, stage->names[1], -ENOENT,
+				  (struct bytes){ NULL, 0 });
+	for (int n = 0; n < 100; n++, server.now_ms += 1000)
+		downloader_work(stage->downloader);
+	CHECK(stick.requests == 12);
+}
+
 static void tells_what_the_release_does_not_have(void **state)
 {
 	struct stage *stage = *state;
@@ -695,6 +749,7 @@ int main(void)
 		STAGED(asks_for_the_locator_after_damage_but_not_amid_it),
 		STAGED(asks_again_for_the_rest_of_a_pack_cut_short),
 		STAGED(waits_while_the_server_is_away),
+		STAGED(asks_the_stick_again_when_it_could_not_be_read),
 		STAGED(tells_what_the_release_does_not_have),
 		STAGED(does_without_a_damaged_locator_until_it_is_repaired),
 		STAGED(follows_objects_into_other_packs),

@@ -26,14 +26,20 @@ static struct {
 	pthread_mutex_t lock;
 	pthread_cond_t changed;
 	bool hangs;
-} device = { PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false };
+	int fails_at; /* this read from now fails; 0: none */
+} device = { PTHREAD_MUTEX_INITIALIZER, PTHREAD_COND_INITIALIZER, false, 0 };
 
 ssize_t pread(int fd, void *to, size_t size, off_t at)
 {
 	pthread_mutex_lock(&device.lock);
 	while (device.hangs)
 		pthread_cond_wait(&device.changed, &device.lock);
+	const bool fails = device.fails_at > 0 && --device.fails_at == 0;
 	pthread_mutex_unlock(&device.lock);
+	if (fails) {
+		errno = EIO;
+		return -1;
+	}
 	return syscall(SYS_pread64, fd, to, size, at);
 }
 
@@ -356,6 +362,43 @@ static void lives_with_damage(void **state)
 	CHECK(look(stage) && get(stage, root, 0, 9, "") == -EBADMSG);
 }
 
+static void fail_read(int n)
+{
+	pthread_mutex_lock(&device.lock);
+	device.fails_at = n;
+	pthread_mutex_unlock(&device.lock);
+}
+
+/* A read that failed once says nothing of the stick. */
+static void reads_again_what_could_not_be_read(void **state)
+{
+	struct stage *stage = *state;
+
+	put_release(stage, "", "T");
+	fail_read(3); /* timestamp, root, release */
+	CHECK(look(stage) && strcmp(stage->said, "root1:A timestamp0:T ") == 0);
+	CHECK(look(stage) && strcmp(stage->said, "root1:A timestamp0:T release0:R ") == 0);
+	CHECK(!look(stage));
+	fail_read(1); /* the locator */
+	CHECK(get(stage, root, 0, 9, "") == -EIO);
+	fail_read(2); /* the pack */
+	CHECK(get(stage, root, 0, 9, "") == -EIO);
+	CHECK(get(stage, root, 0, 9, "sandstone") == 0);
+	make_folder(stage, "tuf");
+	put_text(stage, "tuf/2.root.json", "B");
+	fail_read(1);
+	CHECK(ask_file(stage, "2.root.json") == FILE_NOT_THERE);
+	/* who follows the timestamp asks again when it comes again */
+	CHECK(look(stage) && strstr(stage->said, "timestamp0:T"));
+	CHECK(ask_file(stage, "2.root.json") == FILE_IS_HERE);
+	for (int n = 0; n < 100; n++) { /* a device that never reads it does not go on for ever */
+		fail_read(3);
+		(void)look(stage);
+	}
+	fail_read(0);
+	CHECK(!look(stage));
+}
+
 /* The loop goes on without it, whatever it was asked for; when it comes back it is looked at again.
  */
 static void leaves_a_device_that_hangs_alone(void **state)
@@ -487,6 +530,7 @@ int main(void)
 		STAGED(gives_objects_by_the_locator),
 		STAGED(is_gone_when_it_is_pulled_out),
 		STAGED(lives_with_damage),
+		STAGED(reads_again_what_could_not_be_read),
 		STAGED(opens_no_links_and_nothing_that_blocks),
 		STAGED(refuses_endless_files),
 		STAGED(follows_no_link_on_the_way_to_a_file),
