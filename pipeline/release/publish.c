@@ -115,8 +115,12 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 	if (target->tuf_alone) {
 		rc = sign_alone(target, &release);
 	} else {
-		rc = release_files_write(target->release, target->keys_folder, target->keys,
-					 &release, timestamp_life_s(target));
+		const struct tuf_place place = published_place(target);
+
+		rc = release.tuf_root > 0 ? release_tuf_put_roots(&place) : 0;
+		if (rc == 0)
+			rc = release_files_write(target->release, target->keys_folder, target->keys,
+						 &release, timestamp_life_s(target));
 		if (rc == 0)
 			rc = sign_tuf(target, &release);
 	}

@@ -72,11 +72,11 @@ static int lock(const char *release)
 	return fd < 0 ? complain(release, "tuf", -errno) : fd;
 }
 
-static int copy_roots(const struct tuf_place *place)
+int release_tuf_put_roots(const struct tuf_place *place)
 {
 	struct buffer file;
 	char name[64];
-	int rc = 0;
+	int rc = make_folders(place->release, "tuf");
 
 	buffer_init(&file, TUF_FOLDER_FILE_BYTES_MAX);
 	for (uint32_t version = 1; rc == 0; version++) {
@@ -386,7 +386,7 @@ static int begin(struct next *next, const struct tuf_place *place, int *fd)
 static int end(struct next *next, int fd, int rc)
 {
 	if (rc == 0)
-		rc = copy_roots(&next->folder.place);
+		rc = release_tuf_put_roots(&next->folder.place);
 	if (rc == 0)
 		rc = next->unsigned_folder ? keep_all(next) : put_all(next);
 	finish(next);

@@ -15,6 +15,10 @@
 
 #include "pipeline/release/tuf_folder.h"
 
+/* Puts the roots of the keys' folder into tuf/. Publishing does so too, but a release.json that
+ * says that there are roots must come after them. Errors are logged. */
+must_check int release_tuf_put_roots(const struct tuf_place *place);
+
 /* Publishes release_file, the bytes of a release.json whose content is *what: signs a new
  * timestamp, and the other files where the release is another one. They are signed as signing.ini
  * of the keys' folder says (pipeline/keys/signing.h); nothing is written unless all of them have
