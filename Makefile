@@ -141,9 +141,9 @@ image-check: all ## check that two builds of the image have the same slots
 	@$(IMAGE_DEPS)
 	@image/check.sh
 
-fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each; TARGET=NAME for one; KEEP=yes adds inputs that it found to the corpora
+fuzz: deps ## guided fuzzing under libFuzzer and sanitizers, TIME=60 seconds each, or RUNS=N runs; TARGET=NAME for one; KEEP=yes adds inputs that it found to the corpora
 	@./deps.sh tests/fuzz/tools.txt
-	@TIME="$(TIME)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
+	@TIME="$(TIME)" RUNS="$(RUNS)" TARGET="$(TARGET)" KEEP="$(KEEP)" JOBS="$(JOBS)" tests/fuzz/run.sh
 
 fuzz-coverage: deps ## lines and branches of each decoder that the fuzz targets' inputs reach, into build/coverage/; TARGET=NAME for one
 	@./deps.sh tests/fuzz/tools.txt

@@ -2,6 +2,7 @@
 # make fuzz: each fuzz target under libFuzzer, with AddressSanitizer and UndefinedBehaviorSanitizer.
 #
 #   TIME=SECONDS  for each target (60)      TARGET=NAME  only tests/fuzz/fuzz_NAME.c
+#   RUNS=N        a target ends after so many, too (no limit)
 #   KEEP=yes      what reached new edges and is small goes into tests/fuzz/corpus/NAME
 #
 # A target starts from tests/fuzz/corpus/NAME and from what earlier runs found (build/fuzz/NAME/corpus);
@@ -12,6 +13,7 @@ cd "$(dirname "$0")/../.."
 out=build/fuzz
 time=${TIME:-60}
 [[ $time =~ ^[1-9][0-9]*$ ]] || { echo "TIME=$time: give whole seconds" >&2; exit 2; }
+[[ ${RUNS:-1} =~ ^[1-9][0-9]*$ ]] || { echo "RUNS=$RUNS: give a whole number" >&2; exit 2; }
 INPUT_BYTES_MAX=4096 # of an input that is kept
 CORPUS_BYTES_MAX=24000 CORPUS_FILES_MAX=60 # of a target's corpus, past which nothing is added
 export ASAN_OPTIONS=detect_leaks=1:allocator_may_return_null=1:quarantine_size_mb=16 UBSAN_OPTIONS=print_stacktrace=1
@@ -51,7 +53,7 @@ keep() { # NAME
 run() { # NAME
 	local folder=$out/$1 program=$out/tests/fuzz/fuzz_$1 log=$out/$1/log words=tests/fuzz/dictionaries/$1 rc
 	mkdir -p "$folder/corpus"
-	"$program" -max_total_time="$time" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 -close_fd_mask=3 \
+	"$program" -max_total_time="$time" -runs="${RUNS:--1}" -timeout=25 -rss_limit_mb=2048 -print_final_stats=1 -close_fd_mask=3 \
 		-artifact_prefix="$folder/" ${words:+$([ -f "$words" ] && echo "-dict=$words")} \
 		"$folder/corpus" "tests/fuzz/corpus/$1" >"$log" 2>&1 </dev/null
 	rc=$?
