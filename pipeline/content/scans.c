@@ -38,8 +38,10 @@ struct scans {
 int scans_create(struct scans **out, const struct content *content)
 {
 	*out = calloc(1, sizeof(**out));
-	if (!*out)
+	if (!*out) {
+		log_error("pipeline", "%s: no memory", content->folder);
 		return -ENOMEM;
+	}
 	(*out)->content = content;
 	return 0;
 }

@@ -27,7 +27,7 @@ struct scans_surface {
 };
 
 /* Opens nothing yet. content is borrowed for the lifetime. *out is owned by the caller; NULL on
- * failure. -ENOMEM. */
+ * failure. -ENOMEM, logged. */
 must_check int scans_create(struct scans **out, const struct content *content);
 void scans_destroy(struct scans *scans); /* NULL is fine */
 const struct content *scans_content(const struct scans *scans);
