@@ -351,15 +351,15 @@ static int make_tuf(struct exchange_root *out, const struct exchange *exchange,
 
 int exchange_tuf_root(struct exchange_root *out, const struct exchange *exchange)
 {
-	const uint32_t version = keys_last_tuf_root(exchange->folder);
 	struct tuf_file last = { 0 };
 	const char *why = "cannot be read";
 	struct buffer file;
-	int rc;
+	uint32_t version;
+	int rc = keys_last_tuf_root(&version, exchange->folder);
 
 	out->version = version;
-	if (version == 0)
-		return 0;
+	if (rc < 0 || version == 0)
+		return rc;
 	buffer_init(&file, out->file.ceiling);
 	rc = keys_read_tuf_root(&file, exchange->folder, version);
 	if (rc == 0)

@@ -168,11 +168,14 @@ static int make_signers(struct tuf_signer signers[3], const struct publisher_key
 static int make_root(const char *folder, const struct publisher_keys *keys,
 		     const struct tuf_signer *snapshot)
 {
-	const uint32_t last = keys_last_tuf_root(folder);
 	struct tuf_signer signers[3] = { 0 };
 	struct signing_key root = { 0 };
-	int rc = keys_read_key(&root, folder, "root");
+	uint32_t last;
+	int rc = keys_last_tuf_root(&last, folder);
 
+	if (rc < 0)
+		return rc;
+	rc = keys_read_key(&root, folder, "root");
 	if (rc == -ENOENT)
 		log_error("pipeline",
 			  "%s/root.key: not here; bring it back for this one command, since it "
@@ -208,11 +211,13 @@ static bool is_shared(const char *folder, const struct tuf_signer *snapshot)
 {
 	struct tuf_file last = { 0 };
 	struct buffer file;
+	uint32_t version;
 	const char *why;
 	bool is = false;
 
 	buffer_init(&file, ROOT_BYTES_MAX);
-	if (keys_read_tuf_root(&file, folder, keys_last_tuf_root(folder)) == 0 &&
+	if (keys_last_tuf_root(&version, folder) == 0 &&
+	    keys_read_tuf_root(&file, folder, version) == 0 &&
 	    tuf_root_first(&last, buffer_bytes(&file), &why) == 0)
 		is = has_keyid(&last, TUF_SNAPSHOT, snapshot->id);
 	tuf_file_finish(&last);
@@ -244,13 +249,21 @@ int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version)
 	return buffer_read_file(out, path);
 }
 
-uint32_t keys_last_tuf_root(const char *folder)
+int keys_last_tuf_root(uint32_t *out, const char *folder)
 {
 	char path[PATH_MAX];
 	uint32_t version = 0;
 
+	*out = 0;
 	do
 		snprintf(path, sizeof(path), "%s/tuf/%u.root.json", folder, ++version);
 	while (access(path, F_OK) == 0);
-	return version - 1;
+	if (errno != ENOENT) {
+		const int rc = -errno;
+
+		log_error("pipeline", "%s: %s", path, strerror(-rc));
+		return rc;
+	}
+	*out = version - 1;
+	return 0;
 }

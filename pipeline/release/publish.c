@@ -53,16 +53,19 @@ static int64_t timestamp_life_s(const struct publish_target *target)
 	return life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS);
 }
 
-/* Signs in the form of The Update Framework what the earlier form says. */
+/* Signs in the form of The Update Framework what the earlier form says, if the keys are for both.
+ */
 static int sign_tuf(const struct publish_target *target, const struct release *release)
 {
 	const struct tuf_place place = published_place(target);
 	struct buffer file;
 	char path[PATH_MAX];
-	int rc = -ENAMETOOLONG;
+	uint32_t root;
+	int rc = keys_last_tuf_root(&root, target->keys_folder);
 
-	if (keys_last_tuf_root(target->keys_folder) == 0)
-		return 0;
+	if (rc < 0 || root == 0)
+		return rc;
+	rc = -ENAMETOOLONG;
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
 	if (snprintf(path, sizeof(path), "%s/release.json", target->release) < (int)sizeof(path))
 		rc = buffer_read_file(&file, path);
@@ -102,10 +105,11 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 		.expires_s = clock_wall_s() + life_or(target->release_life_s, RELEASE_LIFE_DAYS),
 		.root = root->hash,
 		.root_bytes = root->size,
-		.tuf_root = keys_last_tuf_root(target->keys_folder),
 	};
-	int rc;
+	int rc = keys_last_tuf_root(&release.tuf_root, target->keys_folder);
 
+	if (rc < 0)
+		return rc;
 	if (target->comment && snprintf(release.comment, sizeof(release.comment), "%s",
 					target->comment) >= (int)sizeof(release.comment)) {
 		log_error("pipeline", "the comment is longer than %zu bytes",

@@ -112,8 +112,9 @@ uint64_t published_next(const struct publish_target *target, uint64_t current)
 {
 	const struct tuf_place place = published_place(target);
 	struct tuf_folder folder;
+	uint32_t root;
 
-	if (keys_last_tuf_root(target->keys_folder) > 0) {
+	if (keys_last_tuf_root(&root, target->keys_folder) == 0 && root > 0) {
 		if (tuf_folder_open(&folder, &place) == 0 &&
 		    tuf_folder_naming_version(&folder) > current)
 			current = tuf_folder_naming_version(&folder);

@@ -75,10 +75,12 @@ static void read_newest(struct tuf_file *out)
 {
 	const char *why = "";
 	struct buffer file;
+	uint32_t last;
 
 	*out = (struct tuf_file){ 0 };
 	buffer_init(&file, 64 << 10);
-	for (uint32_t version = 1; version <= keys_last_tuf_root(folder); version++) {
+	CHECK(keys_last_tuf_root(&last, folder) == 0);
+	for (uint32_t version = 1; version <= last; version++) {
 		struct tuf_file next;
 
 		CHECK(keys_read_tuf_root(&file, folder, version) == 0);
@@ -362,7 +364,10 @@ static void what_is_missing_is_said_before_anything_is_made(void **state)
 	refuses(ROOT, -ENOENT);
 	run("mv root.key keys && mv keys/root keys/tuf .");
 	refuses(TIMESTAMP, -ENOENT);
-	run("mv root tuf keys && chmod 644 keys/timestamp.key");
+	run("mv root keys && : > keys/tuf"); /* not a folder: nobody can say that there is no root
+					      */
+	refuses(ROOT, -ENOTDIR);
+	run("rm keys/tuf && mv tuf keys && chmod 644 keys/timestamp.key");
 	refuses(TIMESTAMP, -EPERM);
 	run("chmod 600 keys/timestamp.key && cp keys/timestamp.key keys/root.key");
 	refuses(TIMESTAMP, -EBADMSG);
