@@ -1,15 +1,18 @@
 # The uses of the programs that run on, for torture.sh, which sources this:
 #
 #   fetch    from an empty cache it brings a release from nginx for a client, and ends with it
-#   again    the same with a cache that has all of it, which must not be set aside
+#   folder   the same from a folder
+#   stick    the same from a stick, while the server cannot be reached
+#   again    as fetch, with a cache that has all of it, which must not be set aside
 #   health   it is started by a request, answers each of its pages, and ends when idle (torture_health.py)
 #   curator  it starts, ana signs in, opens a page, saves a page and a text, it ends (torture_curator.py)
 #   kiosk    it starts with a release and a fetcher of its own, and ends when the picture is complete
 #   touch    the same, and fingers open a part's card and page
 
-visits="fetch again health curator kiosk touch" visit=$work/visit metrics_pid=
+visits="fetch folder stick again health curator kiosk touch" visit=$work/visit metrics_pid=
 
 is_visit() { [[ " $visits " = *" $1 "* ]]; }
+is_fetch() { [[ " fetch folder stick again " = *" $1 "* ]]; }
 is_slow_visit() { [ "$1" = kiosk ] || [ "$1" = touch ]; }
 
 # What all visits need, made before the first.
@@ -30,6 +33,8 @@ begin_visits() {
 		print(release["root"], release["root_bytes"])
 	P
 	)
+	printf '#!/bin/bash\nexec build/gopura-fetch --stick %q "$@"\n' "$work/reference" >"$work/fetch-stick"
+	chmod +x "$work/fetch-stick"
 	cp -a "$work/content" "$work/project"
 	echo 'password of ana' | build/gopura-curator user add "$work/project" ana >"$work/log" 2>&1 || { cat "$work/log"; fail user; }
 	printf 'day,minutes\n2026-11-28,1\n' >"$work/visits.csv"
@@ -56,12 +61,17 @@ prepare_visit() {
 use_visit() {
 	local name=$1 program=gopura-$1 command
 	shift
-	[ "$name" != again ] || name=fetch program=gopura-fetch
+	local from=$url fetcher=build/gopura-fetch
+	case $name in
+	folder) from=$work/reference ;;
+	stick) from=https://localhost:1/ fetcher=$work/fetch-stick ;;
+	esac
+	! is_fetch "$name" || program=gopura-fetch
 	local kiosk=(build/gopura-kiosk --display headless --size 640x360 --release "$work/reference"
 		--trust "$work/reference/root/1.json" --state "$visit/state" --visits "$visit/visits.csv" --metrics "$visit/metrics"
 		--log debug)
 	case $name in
-	fetch) command=(build/tests/tools/fetch_tool walk --brief --fetch build/gopura-fetch --release "$url" --ca "$ca"
+	fetch | folder | stick | again) command=(build/tests/tools/fetch_tool walk --brief --fetch "$fetcher" --release "$from" --ca "$ca"
 		--cache "$visit/cache.db" --root "$root" --bytes "$root_bytes" --most-s 20) ;;
 	health) command=(python3 tests/e2e/torture_health.py "$visit" build/gopura-health --kiosk "$visit/none"
 		--fetch "$work/metrics" --faults "$visit/faults" --data "$work" --visits "$work/visits.csv") ;;
@@ -76,7 +86,7 @@ use_visit() {
 # Whether the use's result is there, after a use that ended with 0.
 is_done() {
 	case $1 in
-	fetch | again) grep -q '"damaged":0' "$work/said" ;;
+	fetch | folder | stick | again) grep -q '"damaged":0' "$work/said" ;;
 	kiosk) grep -q '"settled": true' "$visit/views.jsonl" ;;
 	touch) grep -q 'app: page of' "$work/said" || was_late ;;
 	esac

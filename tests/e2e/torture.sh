@@ -2,7 +2,7 @@
 # Every allocation and every call on a file: a program's use is repeated with its n-th malloc failing, then with its n-th
 # open, read, write, fsync, rename, mmap ... failing (tests/tools/failing_calls.c). It may succeed without what failed, or end
 # with status 1 to 3 and a line that says what is wrong; it may not crash, hang, or fail without a word. What is made is
-# whole or not there: after a failed build the next one makes the release that it would have made.
+# whole or not there, and after a failed use the next one makes all that it would have made.
 #
 # Of the programs that run on, tests/e2e/lib-torture.sh says what a use is. The call fails once, in whichever process
 # makes it first: the program may go on, or end and be started again. At the end the use's result must be there, nothing
@@ -25,44 +25,81 @@ tiny_content "$work/content" 10000 5000
 cp -a "$work/release" "$work/reference"
 cp -a "$work/keys" "$work/both_forms"
 "$content" keys --keys "$work/both_forms" --tuf >"$work/log" 2>&1 || { cat "$work/log"; fail keys; }
+"$content" annotations export "$work/content" --out "$work/parts.jsonld" >"$work/log" 2>&1 || { cat "$work/log"; fail annotations; }
 printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/temple/\ntrust = 1.json\n' >"$work/gopura.conf"
 cp "$work/keys/root/1.json" "$work/"
 mkdir "$work/pillar"
 python3 tests/tools/leaning_pillar.py "$work/pillar" 0
 printf '[model]\nscans = pillar.obj\n' >"$work/pillar/temple.ini"
-"$content" export "$work/pillar" --budget 20kB --out "$work/pillar.glb" >"$work/log" 2>&1 || { cat "$work/log"; fail export; }
+printf '{"steps": [{"lattice": [1, 1, 1], "box": {"low": [-2, -2, 0], "high": [2, 2, 4]}, "moves": [{"points": [0, "all", "all"], "by": [-0.2, 0, 0]}]}]}\n' >"$work/bend.json"
+python3 tests/tools/points_of_a_ball.py "$work/ball.ply"
+printf '20 -25 14  0 0 9  45\n' >"$work/view.txt"
 
 . tests/e2e/lib-torture.sh
+
+# makes NAME: of the uses that make files from others, the command, which writes into $work/new
+makes() {
+	case $1 in
+	export) command=("$content" export "$work/pillar" --budget 20kB --out "$work/new/pillar.glb") ;;
+	temple) command=("$content" temple --triangles 10000 --out "$work/new/temple.ply") ;;
+	deform) command=("$content" deform --with "$work/bend.json" --out "$work/new/pillar.obj" "$work/pillar/pillar.obj") ;;
+	reconstruct) command=("$content" reconstruct --closed --budget-triangles 300 --out "$work/new/ball.ply" "$work/ball.ply") ;;
+	render) command=("$content" render "$work/content" --views "$work/view.txt" --size 64x48 --out "$work/new") ;;
+	annotations) command=("$content" annotations export "$work/content" --out "$work/new/parts.jsonld") ;;
+	iiif) command=("$content" annotations export "$work/content" --iiif --out "$work/new/manifest.json") ;;
+	annotated) command=("$content" annotations import "$work/parts.jsonld" --into "$work/new") ;;
+	terminal) command=(build/gopura-setup --conf "$work/gopura.conf" --boards board --out "$work/new") ;;
+	*) return 1 ;;
+	esac
+}
 
 # use NAME SETTING...: one use of a program, from a fresh state, with these settings of the shim for the program alone
 use() {
 	local name=$1 command
 	shift
 	is_visit "$name" && { use_visit "$name" "$@"; return; }
-	case $name in
+	makes "$name" || case $name in
 	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
 	exchange) command=("$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp) ;;
-	export) command=("$content" export "$work/pillar" --budget 20kB --out "$work/new.glb") ;;
-	temple) command=("$content" temple --triangles 10000 --out "$work/new.ply") ;;
 	inspect) command=("$content" inspect "$work/release") ;;
 	verify) command=("$content" verify "$work/release") ;;
 	import) command=("$content" import "$work/content/temple.ply") ;;
 	publish) command=("$content" publish "$work/content" --out "$work/release" --keys "$work/keys" --comment "$RANDOM") ;;
+	both) command=("$content" publish "$work/content" --out "$work/new" --keys "$work/both_forms" --comment "$RANDOM") ;;
+	user) command=(build/gopura-curator user add "$work/new" eva) ;;
+	publisher) command=(build/gopura-curator publisher "$work/new" --out "$work/release" --keys "$work/keys" --jobs 1 --once) ;;
 	build) command=("$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1) ;;
 	setup) command=(build/gopura-setup --check "$work/gopura.conf") ;;
 	esac
-	timeout -k 5 120 env "$@" LD_PRELOAD="$shim" "${command[@]}" >"$work/said" 2>&1
+	timeout -k 5 120 env FAIL_PROGRAM="${command[0]##*/}" "$@" LD_PRELOAD="$shim" "${command[@]}" >"$work/said" 2>&1 <<<'password of eva'
 }
 # prepare NAME: what a use begins with
 prepare() {
-	rm -rf "$work/new" "$work/new.glb" "$work/fresh" "$work/made" "$work/exchanged"
+	rm -rf "$work/new" "$work/fresh" "$work/made" "$work/exchanged"
 	is_visit "$1" && { prepare_visit "$1"; return; }
-	[ "$1" != exchange ] || cp -a "$work/both_forms" "$work/exchanged"
-	[ "$1" = build ] || return 0
-	mkdir "$work/fresh"
-	cp -a "$work/content/." "$work/fresh/"
-	rm -rf "$work/fresh/.work"
+	! makes "$1" || mkdir "$work/new"
+	case $1 in
+	exchange) cp -a "$work/both_forms" "$work/exchanged" ;;
+	both) cp -a "$work/reference" "$work/new" ;;
+	user)
+		mkdir "$work/new"
+		cp "$work/content/temple.ini" "$work/new/"
+		build/gopura-curator user add "$work/new" ana >"$work/said" 2>&1 <<<'password of ana' ;;
+	publisher)
+		cp -a "$work/content" "$work/new"
+		mkdir -p "$work/new/.curator/publish"
+		ask 1 ;;
+	build)
+		cp -a "$work/content" "$work/fresh"
+		rm -rf "$work/fresh/.work" ;;
+	esac
 }
+# ask N: the page's N-th request for a release
+ask() {
+	printf '{"number": %d, "sequence": 0, "at": 1795000000, "by": "ana", "comment": "%d"}\n' "$1" "$RANDOM" >"$work/new/.curator/publish/request.json"
+}
+says_tuf() { python3 -c 'import base64, json, sys; sys.exit("tuf_root" not in json.loads(base64.b64decode(json.load(open(sys.argv[1]))["payload"])))' "$1/release.json"; }
+step_of_publisher() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["step"])' "$work/new/.curator/publish/state.json"; }
 
 runs=0 survived=0 faults=0
 fault() { faults=$((faults + 1)); echo "  FAULT $*"; sed 's/^/        /' "$work/said" "$work/once" 2>/dev/null | tail -n 6; }
@@ -77,18 +114,43 @@ strain() {
 	[ "$status" -le 3 ] || fault "$1: $2 call $4 (errno $3) ended it with status $status"
 	[ "$status" = 0 ] || [ -s "$work/said" ] || fault "$1: $2 call $4 (errno $3): it failed without a word"
 	is_visit "$1" && { check_visit "$1" "$status" "$1: $2 call $4 (errno $3)"; return; }
+	! makes "$1" || { check_made "$1" "$status" "$1: $2 call $4 (errno $3)"; return; }
 	case $1 in
 	publish | inspect | verify)
 		"$content" verify "$work/release" >"$work/said" 2>&1 || fault "$1: $2 call $4: the release is damaged" ;;
+	both)
+		! says_tuf "$work/new" || [ -f "$work/new/tuf/1.root.json" ] || fault "both: $2 call $4: a root is promised that is not there"
+		use both && "$content" verify "$work/new" >"$work/said" 2>&1 &&
+			"$content" verify "$work/new" --trust "$work/both_forms/tuf/1.root.json" >"$work/said" 2>&1 ||
+			fault "both: $2 call $4: the next one does not go on" ;;
 	exchange)
 		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
 			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
-	export)
-		[ ! -e "$work/new.glb" ] || cmp -s "$work/pillar.glb" "$work/new.glb" || fault "export: $2 call $4: the file is not whole" ;;
+	user)
+		{ [ "$status" = 0 ] || use user; } && build/gopura-curator user list "$work/new" >"$work/said" && grep -q ana "$work/said" &&
+			grep -q eva "$work/said" || fault "user: $2 call $4: an account is lost, or none can be added" ;;
+	publisher)
+		use publisher && [[ $(step_of_publisher) =~ done|failed ]] && ask 2 && use publisher && [ "$(step_of_publisher)" = done ] &&
+			"$content" verify "$work/release" >"$work/said" 2>&1 || fault "publisher: $2 call $4: the next request is not carried out" ;;
 	build)
 		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
 			diff -rq "$work/reference/packs" "$work/made/packs" >>"$work/said" || fault "build: $2 call $4: the next one makes another release" ;;
 	esac
+}
+
+# check_made NAME STATUS WHAT: a file is there whole or not at all, and the next use makes all of them. gopura-setup goes on
+# with what it could read, and lists what it could not.
+check_made() {
+	local path again=$2
+	if [ "$1" = terminal ] && [ -s "$work/new/faults" ]; then
+		again=1
+	else
+		while read -r path; do
+			cmp "$work/new/$path" "$work/made-$1/$path" >"$work/said" 2>&1 || fault "$3: $path is not whole"
+		done < <(cd "$work/new" && find . -type f)
+	fi
+	[ "$again" = 0 ] || use "$1" || fault "$3: the next one does not work"
+	diff -r "$work/made-$1" "$work/new" >"$work/said" 2>&1 || fault "$3: something else was made"
 }
 
 # all NAME KIND ERRNO
@@ -97,6 +159,7 @@ all() {
 	if [ ! -e "$count" ]; then
 		prepare "$1"
 		use "$1" FAIL_KIND="$2" FAIL_COUNT="$count" || fault "$1 fails without a failing call"
+		[ ! -d "$work/new" ] || [ -d "$work/made-$1" ] || mv "$work/new" "$work/made-$1"
 	fi
 	calls=$(sort -n "$count" | tail -n 1)
 	step=1
@@ -108,7 +171,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys exchange export temple inspect verify import publish setup build fetch again health curator kiosk touch}; do
+for name in ${USES:-keys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk touch}; do
 	all "$name" memory 12
 	all "$name" io 5  # EIO
 	all "$name" io 28 # ENOSPC
