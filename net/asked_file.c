@@ -9,6 +9,8 @@
 
 #include "base/clock.h"
 
+enum { NO_MEMORY_MS = 1000 }; /* until what failed without memory is tried again */
+
 struct asked_file {
 	struct asked_file_options options;
 	struct message_file file; /* what is asked for; no name: nothing */
@@ -58,7 +60,7 @@ static bool on_piece(void *data, struct bytes piece)
 
 static enum file_answer answer_of(int rc, const struct buffer *body)
 {
-	if (rc == -EBADMSG || rc == -EFBIG || body->error)
+	if (rc == -EBADMSG || body->error)
 		return FILE_TOO_LARGE;
 	return rc == 0 && body->size > 0 ? FILE_IS_HERE : FILE_NOT_THERE;
 }
@@ -78,6 +80,10 @@ static void on_done(void *data, const struct http_result *result)
 	}
 	link_answered(asked->options.link);
 	asked->failures = 0;
+	if (body.error == -ENOMEM) { /* ours, not the server's */
+		asked->next_ms = clock_now_ms() + NO_MEMORY_MS;
+		return;
+	}
 	asked->file.name[0] = '\0';
 	asked->body = (struct buffer){ 0 };
 	file.answer = answer_of(result->rc, &body);
@@ -100,7 +106,7 @@ static void request(struct asked_file *asked)
 	buffer_finish(&asked->body);
 	buffer_init(&asked->body, asked->file.bytes_max);
 	if (http_get(asked->options.http, &get, &asked->request) < 0)
-		asked->next_ms = clock_now_ms() + 1000;
+		asked->next_ms = clock_now_ms() + NO_MEMORY_MS;
 	else
 		asked->options.link->in_flight++;
 }

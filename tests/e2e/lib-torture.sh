@@ -7,13 +7,14 @@
 #   health   it is started by a request, answers each of its pages, and ends when idle (torture_health.py)
 #   curator  it starts, ana signs in, opens a page, saves a page and a text, it ends (torture_curator.py)
 #   kiosk    it starts with a release and a fetcher of its own, and ends when the picture is complete
-#   touch    the same, and fingers open a part's card and page
+#   follow   the same by the metadata of The Update Framework, from a stick; the call fails in its fetcher
+#   touch    as kiosk, and fingers open a part's card and page
 
-visits="fetch folder stick again health curator kiosk touch" visit=$work/visit metrics_pid=
+visits="fetch folder stick again health curator kiosk follow touch" visit=$work/visit metrics_pid=
 
 is_visit() { [[ " $visits " = *" $1 "* ]]; }
 is_fetch() { [[ " fetch folder stick again " = *" $1 "* ]]; }
-is_slow_visit() { [ "$1" = kiosk ] || [ "$1" = touch ]; }
+is_slow_visit() { [[ " kiosk follow touch " = *" $1 "* ]]; }
 
 # What all visits need, made before the first.
 begin_visits() {
@@ -35,6 +36,7 @@ begin_visits() {
 	)
 	printf '#!/bin/bash\nexec build/gopura-fetch --stick %q "$@"\n' "$work/reference" >"$work/fetch-stick"
 	chmod +x "$work/fetch-stick"
+	"$content" publish "$work/content" --out "$work/release" --keys "$work/both_forms" >"$work/log" 2>&1 || { cat "$work/log"; fail publish; }
 	cp -a "$work/content" "$work/project"
 	echo 'password of ana' | build/gopura-curator user add "$work/project" ana >"$work/log" 2>&1 || { cat "$work/log"; fail user; }
 	printf 'day,minutes\n2026-11-28,1\n' >"$work/visits.csv"
@@ -76,6 +78,8 @@ use_visit() {
 	health) command=(python3 tests/e2e/torture_health.py "$visit" build/gopura-health --kiosk "$visit/none"
 		--fetch "$work/metrics" --faults "$visit/faults" --data "$work" --visits "$work/visits.csv") ;;
 	curator) command=(python3 tests/e2e/torture_curator.py "$visit" build/gopura-curator "$visit/content") ;;
+	follow) program=gopura-fetch command=("${kiosk[@]}" --release https://localhost:1/ --stick "$work/release" --trust
+		"$work/both_forms/tuf/1.root.json" --poll-s 1 --views "$work/views.txt" --capture "$visit") ;;
 	kiosk) command=("${kiosk[@]}" --views "$work/views.txt" --capture "$visit") ;;
 	touch) program=gopura-kiosk command=("${kiosk[@]}" --touch-replay "$work/page.touch" --quit-after-replay) ;;
 	esac
@@ -87,7 +91,7 @@ use_visit() {
 is_done() {
 	case $1 in
 	fetch | folder | stick | again) grep -q '"damaged":0' "$work/said" ;;
-	kiosk) grep -q '"settled": true' "$visit/views.jsonl" ;;
+	kiosk | follow) grep -q '"settled": true' "$visit/views.jsonl" ;;
 	touch) grep -q 'app: page of' "$work/said" || was_late ;;
 	esac
 }
@@ -98,7 +102,7 @@ has_said() { grep -qE '^(error|warn): |^gopura-' "$work/said"; }
 # check_visit NAME STATUS WHAT: after a use with a failing call
 check_visit() {
 	local name=$1 status=$2 what=$3
-	if ! is_slow_visit "$name"; then
+	if ! is_slow_visit "$name" || [ "$name" = follow ]; then
 		[ "$status" = 0 ] && is_done "$name" || fault "$what: it does not work again"
 	elif [ "$status" != 0 ]; then
 		has_said || fault "$what: it ended without a word"
@@ -113,7 +117,7 @@ check_visit() {
 			fault "$what: the history is damaged"
 		[ -z "$(find "$visit/content" -name '*.tmp*' -o -name '*broken*')" ] || fault "$what: it leaves files"
 	elif [ "$name" != health ]; then
-		name=${name/touch/kiosk}
+		[ "$name" != touch ] || name=kiosk
 		use_visit "$name" FAIL_KIND=none && is_done "$name" || fault "$what: the next one does not work"
 		[ -z "$(find "$visit" -name '*.broken*')" ] || fault "$what: the next one sets a file aside as damaged"
 	fi

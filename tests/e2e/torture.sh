@@ -9,7 +9,7 @@
 # may be left in memory or open, and a use without a failing call works.
 #
 #   make torture            every n of every use
-#   SAMPLES=N               so many of each, spread over all (default 2; all: 0)
+#   SAMPLES=N               so many of each, spread over all, and one errno of several (default 2; all: 0)
 #   USES="verify build"     of these alone
 set -eu
 cd "$(dirname "$0")/../.."
@@ -173,13 +173,12 @@ all() {
 RANDOM=${SEED:-1}
 for name in ${USES:-keys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk touch}; do
 	all "$name" memory 12
-	all "$name" io 5  # EIO
-	all "$name" io 28 # ENOSPC
-	all "$name" io 4  # EINTR
+	io=(5 28 4) database=(5 28) # EIO, ENOSPC, EINTR
+	[ "$samples" = 0 ] || io=("${io[RANDOM % 3]}") database=("${database[RANDOM % 2]}")
+	for error in "${io[@]}"; do all "$name" io "$error"; done
 	all "$name" short 0
 	is_visit "$name" || continue
-	all "$name" database 5
-	all "$name" database 28
+	for error in "${database[@]}"; do all "$name" database "$error"; done
 done
 echo "$runs runs, $survived went on without what failed, $faults faults"
 [ "$faults" = 0 ]
