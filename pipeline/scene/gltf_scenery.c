@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/srgb.h"
 #include "geometry/vec.h"
 #include "pipeline/scene/gltf_morph.h"
 #include "pipeline/scene/gltf_motions.h"
@@ -44,8 +45,7 @@ static int fail(const struct walk *walk, int rc, const cJSON *object)
 
 static float to_srgb(float linear)
 {
-	linear = fminf(fmaxf(linear, 0), 1);
-	return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;
+	return srgb_of_light(fminf(fmaxf(linear, 0), 1));
 }
 
 struct look {

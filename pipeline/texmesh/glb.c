@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "geometry/srgb.h"
 #include "geometry/vec.h"
 
 /* Types of components, targets of buffers, and modes of textures, by GL's numbers. */
@@ -153,11 +154,9 @@ static void add_primitives(struct writer *w)
 	buffer_finish(&attributes);
 }
 
-static double linear(uint8_t srgb)
+static float linear(uint8_t srgb)
 {
-	const double s = srgb / 255.0;
-
-	return s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4);
+	return srgb_to_light((float)srgb / 255);
 }
 
 static void add_materials(struct writer *w)
@@ -268,7 +267,7 @@ static void put_attributes(struct buffer *out, const struct writer *w)
 	}
 	for (uint32_t i = 0; mesh->colours && i < count; i++) {
 		for (int k = 0; k < 3; k++)
-			buffer_put_u16(out, share_16((float)linear(mesh->colours[i][k])));
+			buffer_put_u16(out, share_16(linear(mesh->colours[i][k])));
 		buffer_put_u16(out, UINT16_MAX);
 	}
 }

@@ -28,6 +28,7 @@ void reduced_mesh_finish(struct reduced_mesh *mesh)
 	free(mesh->normals);
 	free(mesh->uvs);
 	free(mesh->colours);
+	free(mesh->origins);
 	free(mesh->triangles);
 	free(mesh->materials);
 	free(mesh->firsts);
@@ -47,6 +48,7 @@ static int allocate(struct reduced_mesh *out, const struct reduced_mesh *like, u
 	out->positions = malloc(v * sizeof(*out->positions));
 	out->normals = calloc(v, sizeof(*out->normals));
 	out->triangles = malloc(t * sizeof(*out->triangles));
+	out->origins = malloc(v * sizeof(*out->origins));
 	out->firsts = calloc((size_t)like->material_count + 2, sizeof(*out->firsts));
 	if (like->uvs) {
 		out->uvs = malloc(v * sizeof(*out->uvs));
@@ -54,7 +56,7 @@ static int allocate(struct reduced_mesh *out, const struct reduced_mesh *like, u
 	}
 	if (like->colours)
 		out->colours = malloc(v * sizeof(*out->colours));
-	if (out->positions && out->normals && out->triangles && out->firsts &&
+	if (out->positions && out->normals && out->triangles && out->origins && out->firsts &&
 	    !out->uvs == !like->uvs && !out->materials == !like->uvs &&
 	    !out->colours == !like->colours)
 		return 0;
@@ -227,6 +229,7 @@ static int compact(struct reduced_mesh *out, const struct reduced_mesh *whole)
 			continue;
 		vec_copy(out->positions[to], whole->positions[i]);
 		vec_copy(out->normals[to], whole->normals[i]);
+		out->origins[to] = i;
 		if (out->uvs) {
 			memcpy(out->uvs[to], whole->uvs[i], sizeof(out->uvs[to]));
 			out->materials[to] = whole->materials[i];

@@ -14,6 +14,7 @@ struct reduced_mesh {
 	float (*normals)[3];   /* unit vectors: means of the whole scan's triangles, by area */
 	float (*uvs)[2];       /* as struct mesh has them; NULL: no textures */
 	uint8_t (*colours)[4]; /* as struct mesh; NULL: textures, or one colour */
+	uint32_t *origins;     /* of a mesh that was made: the vertex of the whole that each was */
 	uint8_t colour[3];     /* that colour, sRGB; white: of a mesh without any */
 	uint32_t (*triangles)[3];
 	/* Texture of each vertex; NULL: no textures. Triangles are in the order of their textures:

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "pipeline/texmesh/glb.h"
+#include "pipeline/texmesh/mean_colours.h"
 #include "pipeline/texmesh/texture_budget.h"
 #include "pipeline/texmesh/vertex_scales.h"
 
@@ -192,6 +193,9 @@ int texmesh_make(struct buffer *out, const struct mesh *mesh, const struct texme
 	} else if (rc == 0) {
 		rc = fit_all(&maker, report);
 	}
+	if (rc == 0 && maker.reduced.colours &&
+	    maker.reduced.triangle_count < maker.whole.triangle_count)
+		rc = mean_colours(&maker.reduced, &maker.whole);
 	if (rc == 0)
 		rc = write(out, &maker);
 	report->triangle_count = maker.reduced.triangle_count;

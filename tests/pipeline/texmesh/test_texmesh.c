@@ -245,7 +245,7 @@ static void a_seam_stays_closed(void **state)
 	mesh_finish(&pillar);
 }
 
-static void colours_of_vertices_are_kept(void **state)
+static void colours_are_those_of_the_scan_around(void **state)
 {
 	struct mesh temple = shape_temple(60), mesh;
 	struct texmesh_report report;
@@ -261,11 +261,35 @@ static void colours_of_vertices_are_kept(void **state)
 		for (int k = 0; k < 3; k++) {
 			const float at = mesh.positions[i][k];
 
-			error = fmax(error, fabs(mesh.colours[i][k] -
-						 (128.0 + 60 * sin((3 + k) * (double)at))));
+			error +=
+				fabs(mesh.colours[i][k] - (128.0 + 60 * sin((3 + k) * (double)at)));
 		}
+	error /= 3.0 * mesh.vertex_count;
 	if (error > 3)
-		fail_msg("a colour is off by %g", error);
+		fail_msg("colours are off by %g in the mean", error);
+	mesh_finish(&mesh);
+	mesh_finish(&temple);
+	buffer_finish(&file);
+}
+
+/* Black and white at random, which together give half of the light: hardly a vertex is either. */
+static void colours_are_means(void **state)
+{
+	struct mesh temple = shape_temple(60), mesh;
+	struct texmesh_report report;
+	struct buffer file;
+	uint32_t grey = 0;
+
+	(void)state;
+	for (uint32_t i = 0; i < temple.vertex_count; i++)
+		memset(temple.colours[i], noise(i, 5) > 0.5f ? 255 : 0, 3);
+	CHECK(make(&file, &temple, 20000, false, &report) == 0);
+	read_back(&mesh, &file, NULL);
+	CHECK(mesh.vertex_count > 100);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++)
+		grey += mesh.colours[i][0] > 100 && mesh.colours[i][0] < 245;
+	if (grey < 0.95 * mesh.vertex_count)
+		fail_msg("%u of %u vertices are grey", grey, mesh.vertex_count);
 	mesh_finish(&mesh);
 	mesh_finish(&temple);
 	buffer_finish(&file);
@@ -336,7 +360,8 @@ int main(void)
 		cmocka_unit_test(the_picture_is_where_it_was),
 		cmocka_unit_test(relief_gets_the_better_quality),
 		cmocka_unit_test(a_seam_stays_closed),
-		cmocka_unit_test(colours_of_vertices_are_kept),
+		cmocka_unit_test(colours_are_those_of_the_scan_around),
+		cmocka_unit_test(colours_are_means),
 		cmocka_unit_test(a_second_run_gives_the_same_bytes),
 		cmocka_unit_test(a_picture_that_nothing_shows_takes_nothing),
 		cmocka_unit_test(what_cannot_be_is_said),
