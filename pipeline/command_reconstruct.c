@@ -68,7 +68,9 @@ static int add_input(struct inputs *inputs, const char *path, const struct trans
 {
 	int rc = ARRAY_RESERVE(inputs->scans, inputs->room, inputs->count + 1, 1u << 20);
 
-	if (rc == 0)
+	if (rc < 0)
+		fprintf(stderr, "gopura-content reconstruct: %s: %s\n", path, strerror(-rc));
+	else
 		inputs->scans[inputs->count++] = (struct reconstruct_scan){ path, transform };
 	return rc;
 }
@@ -97,8 +99,10 @@ static int list_inputs(struct inputs *inputs, char **paths, int count)
 	int rc = 0;
 
 	inputs->alignments = calloc((size_t)count, sizeof(*inputs->alignments));
-	if (!inputs->alignments)
+	if (!inputs->alignments) {
+		fprintf(stderr, "gopura-content reconstruct: %s\n", strerror(ENOMEM));
 		return -ENOMEM;
+	}
 	for (int i = 0; i < count && rc == 0; i++)
 		rc = add_argument(inputs, paths[i]);
 	return rc;
