@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/safe_open.h"
+#include "base/transient.h"
 
 enum {
 	LOCATOR_BYTES_MAX = 64 << 20,
@@ -55,17 +56,10 @@ void stick_reader_forget(struct stick_reader *reader)
 
 /* ---- files */
 
-/* Returns whether a failure says nothing of the stick's content, so that the next try may work. */
-static bool may_pass(int rc)
-{
-	return rc == -ENOMEM || rc == -EIO || rc == -EINTR || rc == -EAGAIN || rc == -EMFILE ||
-	       rc == -ENFILE;
-}
-
 /* Makes the next look report everything again if a failure may pass, a few times a stick. */
 static void look_again(struct stick_reader *reader, int rc)
 {
-	if (may_pass(rc) && reader->looks_again++ < LOOKS_AGAIN_MAX)
+	if (is_transient(rc) && reader->looks_again++ < LOOKS_AGAIN_MAX)
 		stick_reader_forget(reader);
 }
 
@@ -140,17 +134,17 @@ static int read_all(struct stick_reader *reader, uint32_t root_version, struct s
 		if (rc == 0)
 			rc = add_file(reader, files, count, META_ROOT, root_version + i);
 	}
-	worst = may_pass(rc) ? rc : 0;
+	worst = is_transient(rc) ? rc : 0;
 	buffer_clear(&reader->file);
 	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
 	rc = reader->file.error;
 	if (rc == 0)
 		rc = add_file(reader, files, count, META_TIMESTAMP, 0);
-	worst = may_pass(rc) ? rc : worst;
+	worst = is_transient(rc) ? rc : worst;
 	rc = tuf ? 0 : read_file(reader, "release.json", MESSAGE_META_BYTES_MAX);
 	if (rc == 0 && !tuf)
 		rc = add_file(reader, files, count, META_RELEASE, 0);
-	return may_pass(rc) ? rc : worst;
+	return is_transient(rc) ? rc : worst;
 }
 
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
@@ -222,7 +216,7 @@ static int release_of(struct stick_reader *reader, struct hash root,
 		rc = locator_decode(&release->locator, buffer_bytes(&reader->file));
 	buffer_finish(&reader->file); /* it may have been large */
 	buffer_init(&reader->file, LOCATOR_BYTES_MAX);
-	if (may_pass(rc))
+	if (is_transient(rc))
 		return rc;
 	release->root = root;
 	release->readable = rc == 0;
@@ -264,7 +258,7 @@ static int get_of(struct stick_reader *reader, struct hash root, const struct me
 		rc = bytes_read_at(reader->pack_fd, to, want->size,
 				   (uint64_t)block->offset + want->offset);
 	if (rc < 0)
-		return may_pass(rc) ? rc : -ENOENT;
+		return is_transient(rc) ? rc : -ENOENT;
 	return hash_equal(hash_of(buffer_bytes(out)), want->hash) ? 0 : -EBADMSG;
 }
 

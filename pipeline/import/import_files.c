@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/transient.h"
 #include "pipeline/import/sandbox.h"
 #include "pipeline/keys/keys.h"
 
@@ -172,8 +173,31 @@ int import_files_open_at(int folder_fd, const char *name)
 	return beside == -ENOENT ? rc : beside;
 }
 
-int import_files_open(const struct import_files *files, const char *name)
+int import_files_open(struct import_files *files, const char *name)
 {
-	return files->in_sandbox ? sandbox_open(name)
-				 : import_files_open_at(files->folder_fd, name);
+	int fd;
+
+	if (files->in_sandbox)
+		return sandbox_open(name);
+	fd = import_files_open_at(files->folder_fd, name);
+	import_files_note(&files->failure, fd, name);
+	return fd;
+}
+
+void import_files_note(struct import_files_failure *failure, int rc, const char *name)
+{
+	if (failure->rc == 0 && is_transient(rc)) {
+		failure->rc = rc;
+		snprintf(failure->name, sizeof(failure->name), "%s", name);
+	}
+}
+
+int import_files_judge(const struct import_files_failure *failure, int rc, const char *scan_path,
+		       struct diagnostics *diagnostics)
+{
+	if (rc < 0 || failure->rc == 0)
+		return rc;
+	return diagnostics_add(diagnostics, failure->rc, scan_path, 0,
+			       "'%s', which it names, cannot be read: %s; try again", failure->name,
+			       strerror(-failure->rc));
 }

@@ -2,9 +2,11 @@
 #ifndef GOPURA_PIPELINE_IMPORT_IMPORT_FILES_H
 #define GOPURA_PIPELINE_IMPORT_IMPORT_FILES_H
 
-#include "base/compiler.h"
 #include <stdbool.h>
 #include <stdint.h>
+
+#include "base/compiler.h"
+#include "base/diagnostics.h"
 
 /* Returns whether a name ends with the extension (".ply") after at least one other character, in
  * any case of letters. */
@@ -21,17 +23,33 @@ must_check int import_files_open_at(int folder_fd, const char *name);
  * a negative errno. */
 must_check int import_files_open_folder(const char *scan_path);
 
+/* The first file that a scan names and that could not be read for a reason that says nothing of the
+ * scan (base/transient.h). Such a scan is refused: what is left out for a reason of its own is
+ * warned of, but a release must not lose a picture because a disk was slow to answer. Zeroed: none.
+ */
+struct import_files_failure {
+	int rc; /* 0: there is none */
+	char name[128];
+};
+
+/* Notes a failure if it is such a one; rc may also be a descriptor. */
+void import_files_note(struct import_files_failure *failure, int rc, const char *name);
+/* Returns rc, or if nothing is wrong but what was noted, that, with an error. */
+must_check int import_files_judge(const struct import_files_failure *failure, int rc,
+				  const char *scan_path, struct diagnostics *diagnostics);
+
 struct import_files {
 	const char *scan_path; /* borrowed; for messages */
 	int folder_fd;         /* borrowed; not used in the sandbox */
 	/* the parent opens files, and the sandbox limits the memory for pictures */
 	bool in_sandbox;
 	uint64_t picture_bytes_left; /* outside the sandbox: for all decoded pictures together */
+	struct import_files_failure failure; /* outside the sandbox */
 };
 
 /* Opens a file that the scan names, directly or through the sandbox's parent. Results as
  * import_files_open_at. */
-must_check int import_files_open(const struct import_files *files, const char *name);
+must_check int import_files_open(struct import_files *files, const char *name);
 /* Returns the error as a phrase about the file, such as "is not beside it". Borrowed. */
 const char *import_files_why(int rc);
 

@@ -408,17 +408,22 @@ struct parent {
 	const char *path; /* borrowed; as given */
 	char seen_path[PATH_MAX];
 	int scan_fd, folder_fd, result_fd;
+	struct import_files_failure failure;
 };
 
 static int open_for_child(void *data, const char *name)
 {
-	const struct parent *parent = data;
+	struct parent *parent = data;
 	int fd;
 
-	if (strcmp(name, parent->seen_path) != 0)
-		return import_files_open_at(parent->folder_fd, name);
-	fd = fcntl(parent->scan_fd, F_DUPFD_CLOEXEC, 0);
-	return fd < 0 ? -errno : fd;
+	if (strcmp(name, parent->seen_path) != 0) {
+		fd = import_files_open_at(parent->folder_fd, name);
+	} else {
+		fd = fcntl(parent->scan_fd, F_DUPFD_CLOEXEC, 0);
+		fd = fd < 0 ? -errno : fd;
+	}
+	import_files_note(&parent->failure, fd, name);
+	return fd;
 }
 
 /* Copies the path, and appends the format's extension if it has another one or none. */
@@ -448,7 +453,7 @@ static int parent_init(struct parent *parent, const char *path, const char *exte
 {
 	int rc;
 
-	*parent = (struct parent){ path, "", -1, -1, -1 };
+	*parent = (struct parent){ .path = path, .scan_fd = -1, .folder_fd = -1, .result_fd = -1 };
 	rc = make_seen_path(parent->seen_path, path, extension);
 	if (rc == 0)
 		rc = parent->scan_fd = open_scan(path);
@@ -484,6 +489,7 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 	};
 	int rc = sandbox_run(read_scene, job, &limits, parent->path, diagnostics);
 
+	rc = import_files_judge(&parent->failure, rc, parent->path, diagnostics);
 	if (rc < 0)
 		return rc;
 	if (lseek(parent->result_fd, 0, SEEK_SET) < 0)

@@ -194,7 +194,8 @@ static int split_corners(struct collector *collector, uint32_t jobs)
 }
 
 static int load_textures(struct collector *collector, const char *path,
-			 const struct import_options *options, struct import_report *report)
+			 const struct import_options *options, struct import_report *report,
+			 struct diagnostics *diagnostics)
 {
 	static const uint8_t plain[3] = { 255, 255, 255 };
 	struct import_files files = {
@@ -218,6 +219,8 @@ static int load_textures(struct collector *collector, const char *path,
 		rc = import_texture(&mesh->textures[i], &files, collector->summary->textures[i],
 				    plain, report);
 	close(files.folder_fd);
+	if (files.failure.rc < 0)
+		rc = import_files_judge(&files.failure, 0, path, diagnostics);
 	return rc;
 }
 
@@ -245,7 +248,7 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	if (rc == 0 && collector->corner_uvs)
 		rc = split_corners(collector, import_jobs(options));
 	if (rc == 0)
-		rc = load_textures(collector, path, options, report);
+		rc = load_textures(collector, path, options, report, diagnostics);
 	if (rc < 0)
 		return diagnostics_add(
 			diagnostics, rc, path, 0, "%s",

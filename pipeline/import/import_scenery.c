@@ -151,6 +151,7 @@ int import_scenery(struct scenery_maker *maker, const char *path, uint32_t layer
 	if (rc == 0)
 		rc = (file.format == SCAN_VRML ? add_vrml : add_gltf)(maker, &file, number, scene,
 								      diagnostics, warnings);
+	rc = import_files_judge(&file.files.failure, rc, path, diagnostics);
 	close_scene(&file);
 	return rc;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/transient.h"
 #include "format/picture.h"
 #include "pipeline/import/import_files.h"
 
@@ -71,6 +72,8 @@ static int read_picture(struct buffer *file, int fd)
 	ssize_t got;
 
 	while ((got = read(fd, chunk, sizeof(chunk))) != 0) {
+		if (got < 0 && errno == EINTR)
+			continue;
 		if (got < 0)
 			return -errno;
 		buffer_put(file, chunk, (size_t)got);
@@ -115,9 +118,11 @@ int import_texture(struct mesh_texture *out, struct import_files *files, const c
 		rc = read_picture(&file, fd);
 		close(fd);
 	}
-	if (rc < 0 && rc != -ENOMEM)
+	if (is_transient(rc))
+		import_files_note(&files->failure, rc, name);
+	else if (rc < 0)
 		rc = tolerate(out, files->scan_path, name, import_files_why(rc), plain, report);
-	else if (rc == 0)
+	else
 		rc = import_texture_bytes(out, files->scan_path, name, buffer_bytes(&file), plain,
 					  report);
 	if (rc == 0 && report->textures > textures)

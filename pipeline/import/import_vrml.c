@@ -171,6 +171,7 @@ int import_vrml(struct mesh *out, const char *path, const struct import_options 
 	rc = read_file(&scene, path, &files, report, diagnostics);
 	if (rc == 0)
 		rc = make(out, scene, path, &files, report, diagnostics);
+	rc = import_files_judge(&files.failure, rc, path, diagnostics);
 	vrml_destroy(scene);
 	close(files.folder_fd);
 	if (rc < 0)

@@ -356,6 +356,28 @@ static void opens_only_plain_names(void **state)
 	close(folder);
 }
 
+/* A file that a moment's lack of memory, or a slow disk, kept from being read is not "not there".
+ */
+static void what_may_be_read_at_the_next_try_is_an_error(void **state)
+{
+	const int of_the_scan[] = {
+		3, 0, -ENOENT, -EXDEV, -ELOOP, -EINVAL, -EKEYREJECTED, -EACCES
+	};
+	struct import_files_failure failure = { 0 };
+	struct diagnostics diagnostics = { 0 };
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(of_the_scan); i++)
+		import_files_note(&failure, of_the_scan[i], "stone.png");
+	CHECK(import_files_judge(&failure, 0, "scan.obj", &diagnostics) == 0);
+	import_files_note(&failure, -EIO, "stone.png");
+	import_files_note(&failure, -EMFILE, "moss.png"); /* the first counts */
+	CHECK(import_files_judge(&failure, -EBADMSG, "scan.obj", &diagnostics) == -EBADMSG);
+	CHECK(diagnostics.count == 0);
+	CHECK(import_files_judge(&failure, 0, "scan.obj", &diagnostics) == -EIO);
+	CHECK(strstr(diagnostics.first.text, "scan.obj: 'stone.png'"));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -368,6 +390,7 @@ int main(void)
 		cmocka_unit_test(a_fifo_is_no_scan),
 		cmocka_unit_test(the_name_does_not_choose_another_reader),
 		cmocka_unit_test(opens_only_plain_names),
+		cmocka_unit_test(what_may_be_read_at_the_next_try_is_an_error),
 	};
 
 	return cmocka_run_group_tests(tests, set_up, tear_down);
