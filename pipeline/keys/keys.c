@@ -41,28 +41,40 @@ bool keys_is_key_file(int fd)
 	       memcmp(start, key_mark, sizeof(start)) == 0;
 }
 
-/* Returns whether the key exists. An empty file is the remains of a power cut and does not
- * count. */
-static bool has_named(const char *folder, const char *name)
+/* Returns 1 if something is there, 0 if not, or a negative errno, logged: a key that cannot be seen
+ * must not be made anew. */
+static int is_there(const char *path, struct stat *out)
+{
+	if (lstat(path, out) == 0)
+		return 1;
+	return errno == ENOENT || errno == ENOTDIR ? 0 : complain(path, -errno);
+}
+
+/* As is_there. An empty file is the remains of a power cut and does not count. */
+static int has_named(const char *folder, const char *name)
 {
 	char path[PATH_MAX];
 	struct stat status;
+	int rc = key_path(path, folder, name);
 
-	return key_path(path, folder, name) == 0 && lstat(path, &status) == 0 &&
-	       !(S_ISREG(status.st_mode) && status.st_size == 0);
+	if (rc == 0)
+		rc = is_there(path, &status);
+	return rc > 0 && S_ISREG(status.st_mode) && status.st_size == 0 ? 0 : rc;
 }
 
-static bool has_key(const char *folder, enum meta_role role)
+static int has_key(const char *folder, enum meta_role role)
 {
 	return has_named(folder, role_names[role]);
 }
 
-static bool has_root(const char *folder)
+static int has_root(const char *folder)
 {
 	char path[PATH_MAX];
+	struct stat status;
 
-	return snprintf(path, sizeof(path), "%s/root/1.json", folder) < PATH_MAX &&
-	       access(path, F_OK) == 0;
+	return snprintf(path, sizeof(path), "%s/root/1.json", folder) < PATH_MAX
+		       ? is_there(path, &status)
+		       : complain(folder, -ENAMETOOLONG);
 }
 
 bool keys_are_in(const char *folder)
@@ -218,27 +230,28 @@ static int read_key(struct signing_key *key, const char *folder, const char *nam
 
 int keys_named(struct signing_key *out, const char *folder, const char *name)
 {
-	char path[PATH_MAX];
-	int rc = sodium_init() < 0 ? -EIO : key_path(path, folder, name);
+	int rc = sodium_init() < 0 ? -EIO : has_named(folder, name);
 
-	if (rc == 0)
-		rc = access(path, F_OK) == 0 ? read_key(out, folder, name)
-					     : make_key(out, folder, name);
-	return rc;
+	if (rc < 0)
+		return rc;
+	return rc > 0 ? read_key(out, folder, name) : make_key(out, folder, name);
 }
 
 int keys_read_key(struct signing_key *out, const char *folder, const char *name)
 {
-	return has_named(folder, name) ? read_key(out, folder, name) : -ENOENT;
+	const int rc = has_named(folder, name);
+
+	if (rc < 0)
+		return rc;
+	return rc > 0 ? read_key(out, folder, name) : -ENOENT;
 }
 
 /* Keys are created in this order. So a folder that has a later key without an earlier one is not an
  * interrupted run: somebody removed the earlier one. */
-static int judge_order(const char *folder)
+static int judge_order(const char *folder, const int has[3])
 {
 	for (int role = META_RELEASE; role <= META_TIMESTAMP; role++)
-		if (has_key(folder, (enum meta_role)role) &&
-		    !has_key(folder, (enum meta_role)(role - 1))) {
+		if (has[role] && !has[role - 1]) {
 			log_error("pipeline",
 				  "%s: %s.key exists, but %s.key and root/1.json do not: restore "
 				  "them from your copy, or begin with an empty folder",
@@ -252,14 +265,19 @@ static int judge_order(const char *folder)
 static int complete(const char *folder)
 {
 	struct signing_key keys[3];
-	int rc = judge_order(folder);
+	int has[3], rc = 0;
 
+	for (int role = META_ROOT; role <= META_TIMESTAMP; role++) {
+		has[role] = has_key(folder, (enum meta_role)role);
+		if (has[role] < 0)
+			return has[role];
+	}
+	rc = judge_order(folder, has);
 	if (rc == 0)
 		rc = make_folders(folder);
 	for (int role = META_ROOT; rc == 0 && role <= META_TIMESTAMP; role++)
-		rc = has_key(folder, (enum meta_role)role)
-			     ? read_key(&keys[role], folder, role_names[role])
-			     : make_key(&keys[role], folder, role_names[role]);
+		rc = has[role] ? read_key(&keys[role], folder, role_names[role])
+			       : make_key(&keys[role], folder, role_names[role]);
 	if (rc == 0)
 		rc = keys_sync_folder(folder);
 	if (rc == 0)
@@ -283,17 +301,22 @@ int keys_sync_parent(const char *folder)
 int keys_make(const char *folder)
 {
 	char aside[PATH_MAX];
+	struct stat status;
 	int rc;
 
 	if (sodium_init() < 0)
 		return -EIO;
-	if (has_root(folder))
-		return complain(folder, -EEXIST);
-	if (access(folder, F_OK) == 0)
-		return complete(folder);
+	rc = has_root(folder);
+	if (rc != 0)
+		return rc < 0 ? rc : complain(folder, -EEXIST);
+	rc = is_there(folder, &status);
+	if (rc != 0)
+		return rc < 0 ? rc : complete(folder);
 	if (snprintf(aside, sizeof(aside), "%s.part", folder) >= PATH_MAX)
 		return complain(folder, -ENAMETOOLONG);
-	rc = has_root(aside) ? 0 : complete(aside);
+	rc = has_root(aside);
+	if (rc >= 0)
+		rc = rc > 0 ? 0 : complete(aside);
 	if (rc == 0 && rename(aside, folder) < 0)
 		rc = complain(folder, -errno);
 	return rc < 0 ? rc : keys_sync_parent(folder);

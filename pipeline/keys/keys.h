@@ -24,7 +24,7 @@ struct publisher_keys {
  * it is complete. The remains of an interrupted run are used and completed. Nobody else may work on
  * the folder at the same time. -EEXIST: it has keys already. Errors are logged. */
 must_check int keys_make(const char *folder);
-/* Returns whether the folder has a key or root/1.json. */
+/* Returns whether the folder has a key or root/1.json, or that cannot be told. */
 bool keys_are_in(const char *folder);
 /* Returns whether the open file is one of these keys. */
 bool keys_is_key_file(int fd);
