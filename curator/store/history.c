@@ -175,7 +175,12 @@ int history_open(struct history **out, const char *path, struct diagnostics *dia
 		rc = from_git(git_repository_open_bare(&history->repository, path), path);
 		if (rc == 0)
 			rc = check(history);
-		if (rc < 0 && rc != -ENOMEM) {
+		if (rc == -EIO) {
+			diagnostics_add(diagnostics, rc, path, 0,
+					"the history cannot be read: %s; look at the disk, or move "
+					"the history away to begin a new one",
+					strerror(-rc));
+		} else if (rc < 0 && rc != -ENOMEM) {
 			git_repository_free(history->repository);
 			history->repository = NULL;
 			rc = put_aside(path, diagnostics);
