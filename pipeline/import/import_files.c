@@ -88,7 +88,7 @@ static int failed(int folder, const char *name)
 static int open_regular(int folder, const char *name)
 {
 	struct stat status;
-	int fd;
+	int fd, rc;
 
 	if (fstatat(folder, name, &status, AT_SYMLINK_NOFOLLOW) < 0)
 		return -errno;
@@ -97,9 +97,10 @@ static int open_regular(int folder, const char *name)
 	fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
 	if (fd < 0)
 		return failed(folder, name);
-	if (fstat(fd, &status) < 0 || !S_ISREG(status.st_mode)) {
+	rc = fstat(fd, &status) < 0 ? -errno : S_ISREG(status.st_mode) ? 0 : -EINVAL;
+	if (rc < 0) {
 		close(fd);
-		return -EINVAL;
+		return rc;
 	}
 	if (keys_is_key_file(fd)) {
 		close(fd);

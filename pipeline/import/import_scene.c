@@ -15,11 +15,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/transient.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/sandbox.h"
 
 struct file {
 	struct aiFile functions; /* must be first: assimp passes its address back */
+	struct files *files;
 	int fd;
 	uint64_t at, size;
 };
@@ -28,7 +30,8 @@ struct files {
 	struct aiFileIO functions; /* must be first, as above */
 	const char *seen_path;
 	size_t folder_bytes; /* length of the folder in seen_path, with the slash */
-	int refused;         /* why the first refused file was refused; 0: none was */
+	int failed; /* why a file could not be read that is there; 0: all could; assimp may go on */
+	int refused; /* why the first refused file was refused; 0: none was */
 	char refused_name[256];
 	char missing[PATH_MAX]; /* path of the last file that was not found */
 	char missing_name[256]; /* the first one, as the scan names it */
@@ -47,6 +50,10 @@ static size_t file_read(struct aiFile *handle, char *to, size_t size, size_t cou
 	while (done < wanted) {
 		ssize_t got = pread(file->fd, to + done, wanted - done, (off_t)(file->at + done));
 
+		if (got < 0 && errno == EINTR)
+			continue;
+		if (got < 0)
+			file->files->failed = -errno;
 		if (got <= 0)
 			break;
 		done += (size_t)got;
@@ -121,6 +128,8 @@ static void note_failure(struct files *files, const char *asked, const char *nam
 {
 	const bool is_new = !is_another_try(files, asked, name);
 
+	if (is_transient(rc))
+		files->failed = rc;
 	if (rc == -ENOENT && is_new && !files->missing_name[0])
 		snprintf(files->missing_name, sizeof(files->missing_name), "%s", name);
 	if (rc == -ENOENT)
@@ -160,6 +169,7 @@ static struct aiFile *files_open(struct aiFileIO *handle, const char *asked, con
 	size = lseek(fd, 0, SEEK_END);
 	file = calloc(1, sizeof(*file));
 	if (!file || size < 0) {
+		files->failed = size < 0 ? -errno : -ENOMEM;
 		free(file);
 		close(fd);
 		return NULL;
@@ -170,6 +180,7 @@ static struct aiFile *files_open(struct aiFileIO *handle, const char *asked, con
 					      .FileSizeProc = file_size,
 					      .SeekProc = file_seek,
 					      .FlushProc = file_flush },
+			       .files = files,
 			       .fd = fd,
 			       .size = (uint64_t)size };
 	return &file->functions;
@@ -210,6 +221,12 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 			files.refused_name, import_files_why(files.refused),
 			files.refused == -EKEYREJECTED ? "no scan needs one: do not trust its maker"
 						       : "copy that file beside the scan");
+		return NULL;
+	}
+	if (files.failed) {
+		diagnostics_add(diagnostics, files.failed, seen_path, 0,
+				"it, or a file that it names, cannot be read: %s; try again",
+				strerror(-files.failed));
 		return NULL;
 	}
 	if (!scene || !scene->mRootNode) {

@@ -65,8 +65,9 @@ union descriptor_room {
 	char bytes[CMSG_SPACE(sizeof(int))];
 };
 
-/* Sends the result of an open: fd is the descriptor or a negative errno. */
-static void send_opened(int socket, int fd)
+/* Sends the result of an open: fd is the descriptor or a negative errno. Returns whether the child
+ * has it. */
+static bool send_opened(int socket, int fd)
 {
 	union descriptor_room room = { .bytes = { 0 } };
 	struct iovec answer = { &fd, sizeof(fd) };
@@ -84,12 +85,13 @@ static void send_opened(int socket, int fd)
 		memcpy(CMSG_DATA(control), &fd, sizeof(fd));
 	}
 	/* If the child does not listen any more, the way it ends tells why. */
-	if (sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) < 0)
-		log_debug("pipeline", "a reader process ended without waiting for its file: %s",
-			  strerror(errno));
+	if (sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT) >= 0)
+		return true;
+	log_debug("pipeline", "a reader process did not get its file: %s", strerror(errno));
+	return false;
 }
 
-/* Runs in the parent: answers one request. Returns false if the child will not ask again. */
+/* Runs in the parent: answers one request. Returns false if no more can be answered. */
 static bool answer_one(int socket, const struct sandbox_options *options, uint32_t *opens)
 {
 	char name[NAME_BYTES_MAX + 1];
@@ -110,10 +112,11 @@ static bool answer_one(int socket, const struct sandbox_options *options, uint32
 		name[size] = '\0';
 		fd = options->open(options->open_data, name);
 	}
-	send_opened(socket, fd);
+	const bool is_sent = send_opened(socket, fd);
+
 	if (fd >= 0)
 		close(fd);
-	return true;
+	return is_sent;
 }
 
 int sandbox_open(const char *name)
@@ -130,9 +133,15 @@ int sandbox_open(const char *name)
 
 	if (size == 0 || size > NAME_BYTES_MAX)
 		return size ? -ENAMETOOLONG : -ENOENT;
-	if (write(asking_fd, name, size) != (ssize_t)size ||
-	    recvmsg(asking_fd, &message, MSG_CMSG_CLOEXEC) != (ssize_t)sizeof(fd))
+	if (asking_fd < 0)
 		return -EIO;
+	if (write(asking_fd, name, size) != (ssize_t)size ||
+	    recvmsg(asking_fd, &message, MSG_CMSG_CLOEXEC) != (ssize_t)sizeof(fd)) {
+		/* A later question would get the answer to this one. */
+		close(asking_fd);
+		asking_fd = -1;
+		return -EIO;
+	}
 	control = CMSG_FIRSTHDR(&message);
 	if (fd < 0)
 		return fd;
@@ -242,8 +251,11 @@ static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options
 		if (poll(news, ARRAY_COUNT(news), (int)left_ms) > 0) {
 			if (news[0].revents)
 				return 0;
-			if (news[1].revents && !answer_one(socket, options, &opens))
+			if (news[1].revents && !answer_one(socket, options, &opens)) {
+				/* the child may wait for an answer */
+				shutdown(socket, SHUT_RDWR);
 				socket = -1; /* poll ignores it */
+			}
 		}
 		if (!ADDRESS_SPACE_IS_COUNTED && resident_bytes(pid) > options->memory_bytes)
 			return -ENOMEM;
