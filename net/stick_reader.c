@@ -56,7 +56,7 @@ void stick_reader_forget(struct stick_reader *reader)
 
 /* ---- files */
 
-/* Makes the next look report everything again if a failure may pass, a few times a stick. */
+/* Makes the next look report everything again after a transient failure, a few times a stick. */
 static void look_again(struct stick_reader *reader, int rc)
 {
 	if (is_transient(rc) && reader->looks_again++ < LOOKS_AGAIN_MAX)
@@ -120,13 +120,13 @@ static int add_file(const struct stick_reader *reader, struct stick_file *files,
 	return file->bytes.error;
 }
 
-/* Returns 0, or the last failure that may pass. */
+/* Returns 0, or the last transient failure. */
 static int read_all(struct stick_reader *reader, uint32_t root_version, struct stick_file *files,
 		    size_t *count)
 {
 	const bool tuf = root_version == MESSAGE_TRUST_TUF;
 	char name[NAME_BYTES];
-	int rc = 0, worst = 0;
+	int rc = 0, failure = 0;
 
 	for (uint32_t i = 1; rc == 0 && i <= STICK_ROOTS_MAX && !tuf; i++) {
 		snprintf(name, sizeof(name), "root/%u.json", root_version + i);
@@ -134,17 +134,17 @@ static int read_all(struct stick_reader *reader, uint32_t root_version, struct s
 		if (rc == 0)
 			rc = add_file(reader, files, count, META_ROOT, root_version + i);
 	}
-	worst = is_transient(rc) ? rc : 0;
+	failure = is_transient(rc) ? rc : 0;
 	buffer_clear(&reader->file);
 	buffer_put(&reader->file, reader->stamp.data, reader->stamp.size);
 	rc = reader->file.error;
 	if (rc == 0)
 		rc = add_file(reader, files, count, META_TIMESTAMP, 0);
-	worst = is_transient(rc) ? rc : worst;
+	failure = is_transient(rc) ? rc : failure;
 	rc = tuf ? 0 : read_file(reader, "release.json", MESSAGE_META_BYTES_MAX);
 	if (rc == 0 && !tuf)
 		rc = add_file(reader, files, count, META_RELEASE, 0);
-	return is_transient(rc) ? rc : worst;
+	return is_transient(rc) ? rc : failure;
 }
 
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
@@ -194,7 +194,7 @@ enum file_answer stick_reader_file(struct stick_reader *reader, const char *name
 /* ---- objects */
 
 /* Sets *out to what the stick has of a release; a locator that is missing or damaged is remembered.
- * Returns 0, or a failure that may pass. */
+ * Returns 0, or a transient failure. */
 static int release_of(struct stick_reader *reader, struct hash root,
 		      const struct stick_release **out)
 {

@@ -23,7 +23,7 @@ struct stick_reader {
 	const char *below;    /* subfolder of the release: "" or "release/" */
 	struct buffer stamp;  /* the timestamp as last reported; empty: no stick */
 	bool reports_again;   /* at the next look */
-	uint32_t looks_again; /* how often that was for a failure that may pass */
+	uint32_t looks_again; /* how often that was for a transient failure */
 	struct buffer file;   /* the file that was read last */
 	struct stick_release releases[MESSAGE_RELEASES_MAX];
 	size_t next_release; /* slot to be overwritten next */

@@ -53,8 +53,7 @@ static int64_t timestamp_life_s(const struct publish_target *target)
 	return life_or(target->timestamp_life_s, TIMESTAMP_LIFE_DAYS);
 }
 
-/* Signs in the form of The Update Framework what the earlier form says, if the keys are for both.
- */
+/* Signs in the form of The Update Framework too, if the keys are for both. */
 static int sign_tuf(const struct publish_target *target, const struct release *release)
 {
 	const struct tuf_place place = published_place(target);

@@ -60,6 +60,7 @@ use() {
 	is_visit "$name" && { use_visit "$name" "$@"; return; }
 	makes "$name" || case $name in
 	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
+	rekeys) command=("$content" keys "$work/content" --keys "$work/exchanged" --museum) ;;
 	exchange) command=("$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp) ;;
 	inspect) command=("$content" inspect "$work/release") ;;
 	verify) command=("$content" verify "$work/release") ;;
@@ -79,7 +80,7 @@ prepare() {
 	is_visit "$1" && { prepare_visit "$1"; return; }
 	! makes "$1" || mkdir "$work/new"
 	case $1 in
-	exchange) cp -a "$work/both_forms" "$work/exchanged" ;;
+	exchange | rekeys) cp -a "$work/both_forms" "$work/exchanged" ;;
 	both) cp -a "$work/reference" "$work/new" ;;
 	user)
 		mkdir "$work/new"
@@ -123,6 +124,11 @@ strain() {
 		use both && "$content" verify "$work/new" >"$work/said" 2>&1 &&
 			"$content" verify "$work/new" --trust "$work/both_forms/tuf/1.root.json" >"$work/said" 2>&1 ||
 			fault "both: $2 call $4: the next one does not go on" ;;
+	rekeys)
+		for path in "$work/both_forms"/*.key "$work/both_forms"/*/1.*json; do
+			cmp "$path" "$work/exchanged/${path#"$work/both_forms/"}" >"$work/said" 2>&1 || fault "rekeys: $2 call $4: ${path##*/} is lost"
+		done
+		use rekeys && [ -f "$work/exchanged/snapshot.key" ] || fault "rekeys: $2 call $4: the next one does not work" ;;
 	exchange)
 		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
 			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
@@ -171,7 +177,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk touch}; do
+for name in ${USES:-keys rekeys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk touch}; do
 	all "$name" memory 12
 	io=(5 28 4) database=(5 28) # EIO, ENOSPC, EINTR
 	[ "$samples" = 0 ] || io=("${io[RANDOM % 3]}") database=("${database[RANDOM % 2]}")
