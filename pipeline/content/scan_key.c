@@ -9,18 +9,22 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-/* The file is named relative to the folder, because the folder's own path may change. */
-static void put_file(struct buffer *text, const struct content *content, const char *path)
+#include "base/transient.h"
+
+/* The file is named relative to the folder, because the folder's own path may change. One that is
+ * not there has no size or time; one that cannot be seen now has no key. */
+static int put_file(struct buffer *text, const struct content *content, const char *path)
 {
 	const char *name = path + strlen(content->folder);
 	struct stat status;
 
 	buffer_put(text, name, strlen(name) + 1);
 	if (stat(path, &status) < 0)
-		return;
+		return is_transient(-errno) ? -errno : 0;
 	buffer_put_u64(text, (uint64_t)status.st_size);
 	buffer_put_u64(text, (uint64_t)status.st_mtim.tv_sec);
 	buffer_put_u64(text, (uint64_t)status.st_mtim.tv_nsec);
+	return 0;
 }
 
 /* Selects files that a scan may refer to. */
@@ -41,7 +45,7 @@ static int put_companions(struct buffer *text, const struct content *content, co
 	char folder[CONTENT_PATH_BYTES], path[CONTENT_PATH_BYTES + 256];
 	const char *slash = strrchr(scan, '/');
 	struct dirent **entries;
-	int count;
+	int count, rc = 0;
 
 	snprintf(folder, sizeof(folder), "%.*s", (int)(slash - scan), scan);
 	count = scandir(folder, &entries, is_companion, alphasort);
@@ -49,11 +53,12 @@ static int put_companions(struct buffer *text, const struct content *content, co
 		return -errno;
 	for (int i = 0; i < count; i++) {
 		snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name);
-		put_file(text, content, path);
+		if (rc == 0)
+			rc = put_file(text, content, path);
 		free(entries[i]);
 	}
 	free(entries);
-	return 0;
+	return rc;
 }
 
 static void put_transform(struct buffer *text, const struct transform *transform)
@@ -64,7 +69,10 @@ static void put_transform(struct buffer *text, const struct transform *transform
 
 int scan_key_put(struct buffer *text, const struct content *content, uint32_t scan)
 {
-	put_file(text, content, content->scans[scan]);
+	const int rc = put_file(text, content, content->scans[scan]);
+
+	if (rc < 0)
+		return rc;
 	if (content->transforms[scan])
 		put_transform(text, content->transforms[scan]);
 	return put_companions(text, content, content->scans[scan]);

@@ -135,11 +135,11 @@ fail:
 	return rc;
 }
 
-static struct hash view_key(const struct content *content, struct hash scans,
-			    const struct camera *view, const struct reference_options *options)
+static int view_key(struct hash *out, const struct content *content, struct hash scans,
+		    const struct camera *view, const struct reference_options *options)
 {
 	struct buffer text;
-	struct hash key;
+	int rc;
 
 	buffer_init(&text, 4096);
 	buffer_put_u32(&text, REFERENCE_VERSION);
@@ -155,9 +155,10 @@ static struct hash view_key(const struct content *content, struct hash scans,
 	buffer_put_u32(&text, (uint32_t)options->width_px);
 	buffer_put_u32(&text, (uint32_t)options->height_px);
 	buffer_put_u32(&text, options->supersample);
-	key = hash_of(buffer_bytes(&text));
+	rc = text.error;
+	*out = hash_of(buffer_bytes(&text));
 	buffer_finish(&text);
-	return key;
+	return rc;
 }
 
 static void view_path(char out[PATH_MAX], const struct reference_options *options, uint32_t n,
@@ -361,11 +362,12 @@ int reference_draw(struct scans *scans, const struct camera *views, uint32_t cou
 				       strerror(errno));
 	progress = progress_start("rendering", "views", count);
 	for (uint32_t n = 0; rc == 0 && n < count; n++) {
-		struct hash key = view_key(scans_content(scans), scans_hash, &views[n], options);
+		struct hash key;
 
-		if (is_there(options, n, key)) {
+		rc = view_key(&key, scans_content(scans), scans_hash, &views[n], options);
+		if (rc == 0 && is_there(options, n, key)) {
 			report->kept++;
-		} else {
+		} else if (rc == 0) {
 			if (!easel.headless)
 				rc = set_up(&easel, scans, diagnostics);
 			if (rc == 0)
