@@ -7,15 +7,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "base/log.h"
+#include "base/transient.h"
 #include "format/metadata.h"
 #include "storage/db.h"
 #include "storage/state_record.h"
 
 enum {
 	BROKEN_BYTES_MAX = 1 << 20,
+	OPEN_TRIES = 4,
+	OPEN_PAUSE_MS = 50,
 	/* the time floor is written only when it rises by at least this */
 	TIME_STEP_S = 3600,
 };
@@ -223,7 +227,7 @@ static void close_db(struct state *state)
 }
 
 /* Opens the database and reads the record. -ENOENT: the database is new. -EBADMSG: it is
- * damaged. */
+ * damaged. -EIO, -ENOMEM: it cannot be read now. */
 static int open_db(struct state *state)
 {
 	int rc = db_open(&state->db, state->path);
@@ -234,9 +238,28 @@ static int open_db(struct state *state)
 		rc = db_exec(state->db, schema);
 	if (rc == 0)
 		rc = read_record(&state->record, state->db);
+	if (rc == -EBADMSG && db_read_failed(state->db))
+		return -EIO;
 	/* SQLite opened it read-only although the file is writable: its header claims a newer
 	 * format. */
 	return rc == -EROFS && access(state->path, W_OK) == 0 ? -EBADMSG : rc;
+}
+
+/* The same, again after a moment where it cannot be read: until the next start nothing can be
+ * stored otherwise. */
+static int open_patiently(struct state *state)
+{
+	const struct timespec moment = { .tv_nsec = OPEN_PAUSE_MS * 1000000 };
+	int rc = open_db(state);
+
+	for (int tries = 1; tries < OPEN_TRIES && is_transient(rc); tries++) {
+		close_db(state);
+		record_finish(&state->record);
+		record_init(&state->record);
+		nanosleep(&moment, NULL);
+		rc = open_db(state);
+	}
+	return rc;
 }
 
 /* ---- damage and recovery */
@@ -323,7 +346,7 @@ int state_create(struct state **out, const char *path)
 	snprintf(state->path, sizeof(state->path), "%s", path);
 	record_init(&state->record);
 	record_drop_leftovers(path);
-	rc = open_db(state);
+	rc = open_patiently(state);
 	if (rc < 0)
 		recover(state, rc);
 	else

@@ -180,6 +180,39 @@ static void comes_back_from_the_second_copy(void **unused)
 	state_destroy(state);
 }
 
+/* SQLite calls a page damaged whose read the system refused. */
+static void a_read_that_fails_is_no_damage(void **unused)
+{
+	struct state *state = open_state();
+	bool was_hit = true;
+
+	(void)unused;
+	CHECK(activate(state, 1) == 0);
+	state_destroy(state);
+	for (uint8_t at = 0; was_hit; at++) {
+		fault_set(FAULT_READ, at, 1);
+		state = open_state();
+		was_hit = fault.reads > at;
+		fault_set(FAULT_NONE, 0, 0);
+		CHECK(!exists(".broken") && active(state) == at + 1);
+		CHECK(activate(state, (uint8_t)(at + 2)) == 0);
+		state_destroy(state);
+		CHECK(!was_hit || at < 200);
+	}
+	state = open_state();
+	const int last = active(state);
+	state_destroy(state);
+	fault_set(FAULT_READ, 0, 1000000); /* as long as it runs */
+	state = open_state();
+	CHECK(active(state) == last); /* of the second copy */
+	CHECK(activate(state, 250) == -EIO);
+	state_destroy(state);
+	fault_set(FAULT_NONE, 0, 0);
+	state = open_state();
+	CHECK(!exists(".broken") && active(state) == last && activate(state, 250) == 0);
+	state_destroy(state);
+}
+
 static void begins_anew_when_both_copies_are_damaged(void **unused)
 {
 	struct state *state = open_state();
@@ -684,6 +717,7 @@ int main(void)
 		IN_A_FOLDER(never_lowers_a_floor),
 		IN_A_FOLDER(refuses_a_file_past_its_ceiling),
 		IN_A_FOLDER(comes_back_from_the_second_copy),
+		IN_A_FOLDER(a_read_that_fails_is_no_damage),
 		IN_A_FOLDER(begins_anew_when_both_copies_are_damaged),
 		IN_A_FOLDER(keeps_the_floor_when_an_old_database_is_put_back),
 		IN_A_FOLDER(clears_the_floors_that_it_is_told_to),
