@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/array.h"
+#include "base/transient.h"
 #include "pipeline/content/content.h"
 
 enum { FILES_MAX = 1 << 20 };
@@ -136,7 +137,10 @@ static int add(struct folder_files *files, const char *folder, const char *name)
 		return 0;
 	snprintf(path, sizeof(path), "%s/%s", folder, name);
 	snprintf(file.name, sizeof(file.name), "%s", name);
-	if (!file_mark_read(&file.mark, path) || file.mark.size_bytes > DOCUMENT_BYTES_MAX)
+	errno = 0;
+	if (!file_mark_read(&file.mark, path)) /* one that cannot be seen now is not removed */
+		return is_transient(-errno) ? -errno : 0;
+	if (file.mark.size_bytes > DOCUMENT_BYTES_MAX)
 		return 0;
 	return folder_files_set(files, &file);
 }
@@ -152,10 +156,15 @@ static int add_folder(struct folder_files *files, const char *folder, const char
 	entries = opendir(path);
 	if (!entries)
 		return errno == ENOENT || errno == ENOTDIR ? 0 : -errno;
-	while (rc == 0 && (entry = readdir(entries))) {
-		snprintf(name, sizeof(name), "%s/%s", room, entry->d_name);
-		rc = add(files, folder, name);
-	}
+	do {
+		errno = 0;
+		entry = readdir(entries);
+		rc = entry ? 0 : -errno;
+		if (entry) {
+			snprintf(name, sizeof(name), "%s/%s", room, entry->d_name);
+			rc = add(files, folder, name);
+		}
+	} while (rc == 0 && entry);
 	closedir(entries);
 	return rc;
 }

@@ -70,6 +70,8 @@ static int copy_picture(struct importer *im, const char *folder, const char *nam
 		return -ENAMETOOLONG;
 	if (access(to, F_OK) == 0) /* already in the folder, or the same file */
 		return 0;
+	if (errno != ENOENT)
+		return diagnostics_add(im->diagnostics, -errno, to, 0, "%s", strerror(errno));
 	buffer_init(&file, 64 << 20);
 	rc = buffer_read_beneath(&file, folder, relative);
 	if (rc < 0)
@@ -196,11 +198,15 @@ bool importer_has_room(struct importer *im)
 		snprintf(path, sizeof(path), "%s/%s", im->options->folder, names[i]);
 		if (i == 1 && rmdir(path) == 0) /* an empty folder is removed */
 			continue;
-		if (access(path, F_OK) < 0)
+		if (access(path, F_OK) == 0)
+			diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
+					"%s exists already: import into a folder without parts and "
+					"pages",
+					path);
+		else if (errno != ENOENT)
+			diagnostics_add(im->diagnostics, -errno, path, 0, "%s", strerror(errno));
+		else
 			continue;
-		diagnostics_add(im->diagnostics, -EINVAL, im->options->file, 0,
-				"%s exists already: import into a folder without parts and pages",
-				path);
 		return false;
 	}
 	return true;

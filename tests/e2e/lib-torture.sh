@@ -7,14 +7,15 @@
 #   health   it is started by a request, answers each of its pages, and ends when idle (torture_health.py)
 #   curator  it starts, ana signs in, opens a page, saves a page and a text, it ends (torture_curator.py)
 #   kiosk    it starts with a release and a fetcher of its own, and ends when the picture is complete
-#   follow   the same by the metadata of The Update Framework, from a stick; the call fails in its fetcher
+#   morning  the same with the state and the cache of the day before, which must not be set aside
+#   follow   as kiosk, by the metadata of The Update Framework, from a stick; the call fails in its fetcher
 #   touch    as kiosk, and fingers open a part's card and page
 
-visits="fetch folder stick again health curator kiosk follow touch" visit=$work/visit metrics_pid=
+visits="fetch folder stick again health curator kiosk morning follow touch" visit=$work/visit metrics_pid=
 
 is_visit() { [[ " $visits " = *" $1 "* ]]; }
 is_fetch() { [[ " fetch folder stick again " = *" $1 "* ]]; }
-is_slow_visit() { [[ " kiosk follow touch " = *" $1 "* ]]; }
+is_slow_visit() { [[ " kiosk morning follow touch " = *" $1 "* ]]; }
 
 # What all visits need, made before the first.
 begin_visits() {
@@ -48,6 +49,10 @@ begin_visits() {
 	mkdir "$visit"
 	use_visit fetch && is_done fetch || { cat "$work/said"; fail "a full cache"; }
 	mv "$visit" "$work/full"
+	mkdir "$visit"
+	use_visit kiosk && is_done kiosk || { cat "$work/said"; fail "the day before"; }
+	rm "$visit/views.jsonl"
+	mv "$visit" "$work/yesterday"
 }
 end_visits() { [ -z "$metrics_pid" ] || kill "$metrics_pid"; }
 
@@ -56,6 +61,7 @@ prepare_visit() {
 	rm -rf "$visit" "$work/once" "$work/left"
 	mkdir "$visit"
 	[ "$1" != again ] || cp "$work"/full/cache.db* "$visit/"
+	[ "$1" != morning ] || cp -a "$work/yesterday/." "$visit"
 	[ "$1" != curator ] || cp -a "$work/project" "$visit/content"
 }
 
@@ -80,7 +86,7 @@ use_visit() {
 	curator) command=(python3 tests/e2e/torture_curator.py "$visit" build/gopura-curator "$visit/content") ;;
 	follow) program=gopura-fetch command=("${kiosk[@]}" --release https://localhost:1/ --stick "$work/release" --trust
 		"$work/both_forms/tuf/1.root.json" --poll-s 1 --views "$work/views.txt" --capture "$visit") ;;
-	kiosk) command=("${kiosk[@]}" --views "$work/views.txt" --capture "$visit") ;;
+	kiosk | morning) program=gopura-kiosk command=("${kiosk[@]}" --views "$work/views.txt" --capture "$visit") ;;
 	touch) program=gopura-kiosk command=("${kiosk[@]}" --touch-replay "$work/page.touch" --quit-after-replay) ;;
 	esac
 	timeout -k 5 120 env FAIL_PROGRAM=$program FAIL_ONCE="$work/once" FAIL_LEFT="$work/left" "$@" LD_PRELOAD="$shim" \
@@ -91,7 +97,7 @@ use_visit() {
 is_done() {
 	case $1 in
 	fetch | folder | stick | again) grep -q '"damaged":0' "$work/said" ;;
-	kiosk | follow) grep -q '"settled": true' "$visit/views.jsonl" ;;
+	kiosk | morning | follow) grep -q '"settled": true' "$visit/views.jsonl" ;;
 	touch) grep -q 'app: page of' "$work/said" || was_late ;;
 	esac
 }

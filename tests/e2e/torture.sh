@@ -177,7 +177,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys rekeys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk follow touch}; do
+for name in ${USES:-keys rekeys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk morning follow touch}; do
 	all "$name" memory 12
 	io=(5 28 4) database=(5 28) # EIO, ENOSPC, EINTR
 	[ "$samples" = 0 ] || io=("${io[RANDOM % 3]}") database=("${database[RANDOM % 2]}")
