@@ -9,13 +9,13 @@
 # may be left in memory or open, and a use without a failing call works.
 #
 #   make torture            every n of every use
-#   SAMPLES=N               so many of each, spread over all, and one errno of several (default 2; all: 0)
+#   SAMPLES=N               so many of each, spread over all, and one errno of several (default 1; all: 0)
 #   USES="verify build"     of these alone
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 . tests/e2e/lib-content.sh
-work=build/e2e/torture samples=${SAMPLES:-2}
+work=build/e2e/torture samples=${SAMPLES:-1}
 trap 'end_visits; stop_server' EXIT
 rm -rf "$work"
 mkdir -p "$work/content"
