@@ -9,8 +9,6 @@
 
 #include "base/clock.h"
 
-enum { NO_MEMORY_MS = 1000 }; /* until what failed without memory is tried again */
-
 struct asked_file {
 	struct asked_file_options options;
 	struct message_file file; /* what is asked for; no name: nothing */

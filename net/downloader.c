@@ -39,7 +39,6 @@ enum {
 	FIRST_BYTES_PER_S = 1 << 20, /* assumed before the line was measured */
 	CACHE_READS_MAX = 64,        /* per call: other sources share the loop */
 	ITEMS_MAX = 1 << 20,         /* of one plan */
-	NO_MEMORY_MS = 1000,         /* until what failed without memory is tried again */
 };
 
 struct downloader {

@@ -9,6 +9,8 @@
 
 #include "base/metrics_refusal.h"
 
+enum { NO_MEMORY_MS = 1000 }; /* until what failed without memory is tried again */
+
 struct link {
 	uint32_t failures; /* in a row, since the last answer */
 	int64_t retry_at_ms;

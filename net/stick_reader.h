@@ -47,9 +47,8 @@ void stick_reader_finish(struct stick_reader *reader); /* A zeroed struct is fin
 /* Makes the next look report everything again. */
 void stick_reader_forget(struct stick_reader *reader);
 /* Looks for a stick. On STICK_INSERTED, files[0 .. *count) holds what to report, in this order; the
- * caller owns their buffers. What could not be read now is reported at the next look, with the
- * rest. Roots are those after root_version; with MESSAGE_TRUST_TUF there is
- * tuf/timestamp.json alone. */
+ * caller owns their buffers. After a failure that may pass, the next look reports everything again.
+ * Roots are those after root_version; with MESSAGE_TRUST_TUF there is tuf/timestamp.json alone. */
 enum stick_change stick_reader_look(struct stick_reader *reader, uint32_t root_version,
 				    struct stick_file files[STICK_FILES_MAX], size_t *count);
 

@@ -100,8 +100,8 @@ static int run(const struct settings *settings)
 
 	if (rc == 0)
 		rc = import_scan(&mesh, settings->scan, &options, &imported, &diagnostics);
-	if (rc == 0 && imported.warning.first.text[0])
-		fprintf(stderr, "warning: %s\n", imported.warning.first.text);
+	if (rc == 0)
+		diagnostics_print(&imported.warning, stderr, "warning: ");
 	if (rc == 0)
 		rc = deform(&mesh, &plan, settings->with, settings->jobs, &report, &diagnostics);
 	if (rc < 0)

@@ -32,9 +32,10 @@ struct import_files_failure {
 	char name[128];
 };
 
-/* Notes a failure if it is such a one; rc may also be a descriptor. */
+/* Notes rc if it is a transient failure and the first; other numbers and descriptors are not noted.
+ */
 void import_files_note(struct import_files_failure *failure, int rc, const char *name);
-/* Returns rc, or if nothing is wrong but what was noted, that, with an error. */
+/* Returns rc if it is a failure; else what was noted, with an error; else rc. */
 must_check int import_files_judge(const struct import_files_failure *failure, int rc,
 				  const char *scan_path, struct diagnostics *diagnostics);
 

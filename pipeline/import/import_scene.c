@@ -30,8 +30,8 @@ struct files {
 	struct aiFileIO functions; /* must be first, as above */
 	const char *seen_path;
 	size_t folder_bytes; /* length of the folder in seen_path, with the slash */
-	int failed; /* why a file could not be read that is there; 0: all could; assimp may go on */
-	int refused; /* why the first refused file was refused; 0: none was */
+	int failed;          /* why a file that is there could not be read; 0: all could */
+	int refused;         /* why the first refused file was refused; 0: none was */
 	char refused_name[256];
 	char missing[PATH_MAX]; /* path of the last file that was not found */
 	char missing_name[256]; /* the first one, as the scan names it */

@@ -17,8 +17,8 @@ must_check int keys_make_museum_root(const char *folder, const struct publisher_
 
 /* Reads tuf/VERSION.root.json into *out, cleared first. -ENOENT: there is none. */
 must_check int keys_read_tuf_root(struct buffer *out, const char *folder, uint32_t version);
-/* Sets *out to the last version of tuf/N.root.json that is there, counted from 1 on; 0: none.
- * Returns 0, or a negative errno, logged, if that cannot be told: then *out is 0. */
+/* Sets *out to the last version of tuf/N.root.json that is there, counted from 1 on; 0: none. If
+ * that cannot be told, returns a negative errno, logged, and *out is 0. */
 must_check int keys_last_tuf_root(uint32_t *out, const char *folder);
 
 #endif

@@ -16,7 +16,7 @@ enum { CHANNELS = 4 }; /* light of three colours, open sky */
 
 struct search {
 	const struct reduced_mesh *whole;
-	uint32_t *firsts;  /* of the corners around each vertex; vertex_count + 1 */
+	uint32_t *firsts; /* of the corners around each vertex, and their end; one spare to count */
 	uint32_t *corners; /* numbers of corners: three times the triangle, and which */
 	float *distances;  /* to the nearest vertex that is left */
 	uint32_t *owners;  /* that vertex, as the reduced mesh counts it; NOBODY: not reached */
@@ -56,14 +56,14 @@ static void sort_corners(struct search *search)
 static int search_begin(struct search *search, const struct reduced_mesh *whole,
 			const struct reduced_mesh *reduced)
 {
-	const size_t vertices = (size_t)whole->vertex_count + 2;
+	const size_t vertices = whole->vertex_count;
 	int rc = 0;
 
 	*search = (struct search){ .whole = whole };
-	search->firsts = calloc(vertices + 1, sizeof(*search->firsts));
+	search->firsts = calloc(vertices + 2, sizeof(*search->firsts));
 	search->corners = malloc((3 * (size_t)whole->triangle_count + 1) * sizeof(uint32_t));
-	search->distances = malloc(vertices * sizeof(*search->distances));
-	search->owners = malloc(vertices * sizeof(*search->owners));
+	search->distances = malloc((vertices + 1) * sizeof(*search->distances));
+	search->owners = malloc((vertices + 1) * sizeof(*search->owners));
 	if (!search->firsts || !search->corners || !search->distances || !search->owners)
 		return -ENOMEM;
 	sort_corners(search);

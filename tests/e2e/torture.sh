@@ -133,8 +133,8 @@ strain() {
 		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
 			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
 	user)
-		{ [ "$status" = 0 ] || use user || grep -q "an account of this name" "$work/said"; } && build/gopura-curator user list "$work/new" >"$work/said" && grep -q ana "$work/said" &&
-			grep -q eva "$work/said" || fault "user: $2 call $4: an account is lost, or none can be added" ;;
+		{ [ "$status" = 0 ] || use user || grep -q "an account of this name" "$work/said"; } &&
+			build/gopura-curator user list "$work/new" >"$work/said" && grep -q ana "$work/said" && grep -q eva "$work/said" || fault "user: $2 call $4: an account is lost, or none can be added" ;;
 	publisher)
 		use publisher && [[ $(step_of_publisher) =~ done|failed ]] && ask 2 && use publisher && [ "$(step_of_publisher)" = done ] &&
 			"$content" verify "$work/release" >"$work/said" 2>&1 || fault "publisher: $2 call $4: the next request is not carried out" ;;
