@@ -11,6 +11,7 @@
 #include "render/scene/scene_around.h"
 #include "render/scene/scene_backdrop.h"
 #include "render/scene/scene_mark.h"
+#include "render/scene/scene_picture.h"
 #include "render/scene/scene_plan.h"
 #include "render/scene/scene_scenery.h"
 #include "render/scene/scene_stream.h"
@@ -21,9 +22,8 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
-	NEW_BUDGET_US = 30000, /* for the first triangles with a program */
-	SEASON_US = 1000000,   /* longest season of the tiles while the eye moves */
-	SHARE_PX_MAX = 320,    /* width of the picture from which image_share is counted */
+	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
+	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
@@ -132,146 +132,7 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 	out->depth_faces_drawn++;
 }
 
-/* ---- pictures */
-
-/* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
- * uniforms of their own are drawn together. */
-struct run {
-	uint32_t patch, first, count;
-};
-
-static void end_run(struct run *run)
-{
-	if (run->count > 0)
-		geometry_draw(run->first, run->count);
-	run->count = 0;
-}
-
-static void draw_piece(struct scene *scene, const struct surface_frame *frame,
-		       const struct visible_piece *v, struct run *run)
-{
-	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
-	const struct piece *piece = &patch->content.bvh.pieces[v->piece];
-	bool joins = surface_faces(v->program) == 0 && v->patch == run->patch &&
-		     piece->first_triangle == run->first + run->count;
-	if (!joins)
-		end_run(run);
-	if (v->patch != run->patch) {
-		geometry_bind(&scene->geometry, v->patch);
-		if (!view_is_cut(frame->view))
-			geometry_cull(&scene->geometry, v->patch);
-		surface_dissolve(&scene->surface, v->range);
-	}
-	run->patch = v->patch;
-	if (surface_faces(v->program) > 0)
-		surface_blend(&scene->surface, frame, v->program, patch->pieces[v->piece].blend,
-			      piece, scene_patch_error_m(scene, v->patch));
-	if (run->count == 0)
-		run->first = piece->first_triangle;
-	run->count += piece->triangle_count;
-}
-
-/* Returns the program that draws a piece. While the eye moves and frames take too long, a piece of
- * which nothing was visible of late has its own colours: it costs no uniforms of its own. */
-static int choose_program(const struct scene *scene, const struct surface_frame *frame,
-			  const struct visible_piece *v)
-{
-	static const struct blend none[PLAN_ENTRIES];
-	const struct piece_state *state = &scene->geometry.patches[v->patch].pieces[v->piece];
-	const bool hidden = state->counted && state->seen_px <= 0;
-	return surface_choose(frame, scene_gives_way(scene) && hidden ? none : state->blend,
-			      v->range);
-}
-
-static void draw_with(struct scene *scene, const struct surface_frame *frame, int program)
-{
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	struct run run = { .patch = HIERARCHY_NONE };
-	surface_begin(&scene->surface, frame, program);
-	for (uint32_t i = 0; i < count; i++)
-		if (scene->visible[i].program == program)
-			draw_piece(scene, frame, &scene->visible[i], &run);
-	end_run(&run);
-}
-
-/* Gives the pieces of a program to the one for a face less. */
-static void do_without(struct scene *scene, int program, uint32_t with[SURFACE_PROGRAMS])
-{
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	for (uint32_t i = 0; i < count; i++)
-		if (scene->visible[i].program == program)
-			scene->visible[i].program--;
-	with[program - 1] += with[program];
-	scene->programs_wait = true;
-}
-
-/* Draws program by program, so that each sets its uniforms once. When the first images come, nearly
- * all of them are new, and without a GPU a frame that begins with all takes up to two seconds. */
-static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
-{
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	uint32_t with[SURFACE_PROGRAMS] = { 0 };
-	int64_t new_us = 0;
-	for (uint32_t i = 0; i < count; i++) {
-		struct visible_piece *v = &scene->visible[i];
-		v->program = choose_program(scene, frame, v);
-		if (v->program >= 0)
-			with[v->program]++;
-	}
-	scene->programs_wait = false;
-	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
-		const bool can_wait = surface_faces(program) > 0 && !frame->shares;
-		if (with[program] == 0)
-			continue;
-		if (!surface_is_new(&scene->surface, frame, program)) {
-			draw_with(scene, frame, program);
-		} else if (can_wait && new_us > NEW_BUDGET_US) {
-			do_without(scene, program, with);
-		} else {
-			const int64_t began_us = clock_now_us();
-			draw_with(scene, frame, program);
-			new_us += clock_now_us() - began_us;
-		}
-	}
-	geometry_cull_none();
-}
-
-/* The target must be bound. */
-static void begin_picture(const struct scene *scene)
-{
-	const uint8_t *sky = scene->root.background;
-	glDisable(GL_BLEND);
-	glEnable(GL_DEPTH_TEST);
-	glDepthMask(GL_TRUE);
-	glDepthFunc(GL_LESS);
-	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
-	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-}
-
-enum picture { PICTURE_DIRECT, PICTURE_ASIDE, PICTURE_SHARES };
-
-/* Direct: in the caller's framebuffer; aside: in a target; shares: there, of the images. */
-static void draw_picture(struct scene *scene, const struct view *view, enum picture kind)
-{
-	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
-	const struct surface_frame frame = {
-		.view = view,
-		.root = &scene->root,
-		.tiles = images ? &scene->tiles : NULL,
-		.depth = &scene->depth,
-		.repository = &scene->repository,
-		.rake = scene->tools.rake,
-		.fog = scene_fog(scene),
-		.even = scene->options.mode == SCENE_CORNERS,
-		.shares = kind == PICTURE_SHARES,
-		.is_direct = kind == PICTURE_DIRECT,
-	};
-	draw_pieces(scene, &frame);
-	scene_draw_stream(scene, &frame);
-	if (!frame.shares)
-		scene_draw_backdrop(scene, view);
-	scene_draw_scenery(scene, &frame);
-}
+/* ---- a picture of shares */
 
 /* Returns the share of the model's pixels that images colour, from a small picture. */
 static float count_share(struct scene *scene)
@@ -284,10 +145,10 @@ static float count_share(struct scene *scene)
 	}
 	if (gl_target_create(&small, width, height > 0 ? height : 1) < 0)
 		return -1;
-	begin_picture(scene);
+	scene_begin_picture(scene);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT);
-	draw_picture(scene, &scene->view, PICTURE_SHARES);
+	scene_draw_picture(scene, &scene->view, PICTURE_SHARES);
 	size_t pixels = (size_t)small.width_px * (size_t)small.height_px;
 	uint8_t *rgba = malloc(4 * pixels);
 	double shares = 0, covered = 0;
@@ -384,8 +245,8 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	enlargement_view(&small, view, scene->used.scale);
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
 		return false;
-	begin_picture(scene);
-	draw_picture(scene, &small, PICTURE_ASIDE);
+	scene_begin_picture(scene);
+	scene_draw_picture(scene, &small, PICTURE_ASIDE);
 	scene_draw_mask(scene, &small, &scene->enlargement.small);
 	enlargement_end(&scene->enlargement, place, view->width_px, view->height_px);
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
@@ -401,13 +262,13 @@ static void show_moving(struct scene *scene, const struct gl_place *place)
 	if ((place->has_depth && !scene->is_marked) ||
 	    accumulation_prepare(&scene->accumulation, view->width_px, view->height_px, true) < 0) {
 		gl_place_bind(place, view->width_px, view->height_px);
-		begin_picture(scene);
-		draw_picture(scene, view, PICTURE_DIRECT);
+		scene_begin_picture(scene);
+		scene_draw_picture(scene, view, PICTURE_DIRECT);
 		return;
 	}
 	gl_target_bind(frame);
-	begin_picture(scene);
-	draw_picture(scene, view, PICTURE_ASIDE);
+	scene_begin_picture(scene);
+	scene_draw_picture(scene, view, PICTURE_ASIDE);
 	scene_draw_mask(scene, view, frame);
 	accumulation_show_frame(&scene->accumulation, place);
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
@@ -422,8 +283,8 @@ static void draw_jittered(struct scene *scene, bool changed)
 	accumulation_offset(&scene->accumulation, changed, &x, &y);
 	view_jitter(&jittered, x, y);
 	gl_target_bind(frame);
-	begin_picture(scene);
-	draw_picture(scene, &jittered, PICTURE_ASIDE);
+	scene_begin_picture(scene);
+	scene_draw_picture(scene, &jittered, PICTURE_ASIDE);
 	scene_draw_mask(scene, &jittered, frame);
 	outline_draw(&scene->outline, &place, frame->width_px, frame->height_px);
 }
