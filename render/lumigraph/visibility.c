@@ -3,18 +3,21 @@
 #include "render/lumigraph/visibility.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "geometry/vec.h"
 
-static const float far_m = 1000; /* far limit of depths, which have 16 bits: steps of 15 mm */
+/* The near limit: at most this, and this share of the far one, since models may be a hand wide. */
+static const float near_most_m = 0.05f, near_share = 2e-3f;
 
 static const char visibility_vertex[] =
 	"attribute vec3 a_position, a_base;\n"
 	"uniform vec4 u_lattice;\n"
 	/* right and up are divided by the tangents of the field of view */
 	"uniform vec3 u_right, u_up, u_forward;\n"
+	"uniform vec2 u_range;\n" /* near and far limit */
 	/* The number goes through the vertices: drivers that draw on the processor copy all state
 	 * of the fragments where one of their uniforms changes, and it changes with each piece. */
 	"uniform vec2 u_number;\n"
@@ -25,7 +28,7 @@ static const char visibility_vertex[] =
 	"#endif\n"
 	"void main() {\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
-	"	float z = dot(p, u_forward), n = 0.05, f = 1000.0;\n"
+	"	float z = dot(p, u_forward), n = u_range.x, f = u_range.y;\n"
 	"	v_depth = vec3(z / f * 65535.0 / 256.0, u_number);\n"
 	"#ifdef CUT\n"
 	"	v_cut = dot(u_cut.xyz, p) - u_cut.w;\n"
@@ -66,6 +69,7 @@ static int build(struct visibility_program *out, const char *defines)
 	out->right = glGetUniformLocation(out->program, "u_right");
 	out->up = glGetUniformLocation(out->program, "u_up");
 	out->forward = glGetUniformLocation(out->program, "u_forward");
+	out->range = glGetUniformLocation(out->program, "u_range");
 	out->lattice = glGetUniformLocation(out->program, "u_lattice");
 	out->number = glGetUniformLocation(out->program, "u_number");
 	out->cut = glGetUniformLocation(out->program, "u_cut");
@@ -127,6 +131,8 @@ void visibility_resume(struct visibility *visibility, const struct root_page *ro
 	glUniform3f(program->right, x * r[0], x * r[1], x * r[2]);
 	glUniform3f(program->up, y * u[0], y * u[1], y * u[2]);
 	glUniform3f(program->forward, f[0], f[1], f[2]);
+	glUniform2f(program->range, fminf(near_share * visibility->far_m, near_most_m),
+		    visibility->far_m);
 	if (program->cut >= 0)
 		glUniform4fv(program->cut, 1, view->cut);
 	glEnableVertexAttribArray(0);
@@ -134,10 +140,22 @@ void visibility_resume(struct visibility *visibility, const struct root_page *ro
 	glDisableVertexAttribArray(2);
 }
 
+/* Returns the greatest distance that a corner of the model's box may have. */
+static float find_far(const struct view *view, const struct root_page *root)
+{
+	float farthest[3];
+	for (int k = 0; k < 3; k++)
+		farthest[k] = fmaxf(fabsf(root->box_min_m[k] - view->eye_m[k]),
+				    fabsf(root->box_max_m[k] - view->eye_m[k]));
+	/* simplified, it may reach beyond */
+	return 1.01f * sqrtf(vec_dot(farthest, farthest));
+}
+
 void visibility_begin(struct visibility *visibility, const struct view *view,
 		      const struct root_page *root)
 {
 	visibility->view = *view;
+	visibility->far_m = find_far(view, root);
 	visibility_resume(visibility, root);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -157,16 +175,29 @@ int visibility_end(struct visibility *visibility)
 	return gl_check("taking the visibility pass");
 }
 
+static uint32_t number_of(const uint8_t pixel[4])
+{
+	return (uint32_t)(pixel[0] & 127) << 8 | pixel[1];
+}
+
+float visibility_depth_m(const struct visibility *visibility, int x, int y)
+{
+	const uint8_t *pixel = visibility->pixels + 4 * (y * VISIBILITY_WIDTH + x);
+	if (number_of(pixel) == 0)
+		return INFINITY;
+	return (float)(pixel[2] << 8 | pixel[3]) / 65535 * visibility->far_m;
+}
+
 bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out)
 {
 	const uint8_t *pixel = visibility->pixels + 4 * (y * VISIBILITY_WIDTH + x);
 	const struct view *view = &visibility->view;
-	uint32_t number = (uint32_t)(pixel[0] & 127) << 8 | pixel[1];
+	uint32_t number = number_of(pixel);
 	if (number == 0)
 		return false;
 	out->piece = number - 1;
 	out->back = pixel[0] & 128;
-	float depth = (float)(pixel[2] << 8 | pixel[3]) / 65535 * far_m;
+	float depth = visibility_depth_m(visibility, x, y);
 	float right = (2 * ((float)x + 0.5f) / VISIBILITY_WIDTH - 1) * view->tan_x * depth;
 	float up = (2 * ((float)y + 0.5f) / VISIBILITY_HEIGHT - 1) * view->tan_y * depth;
 	for (int i = 0; i < 3; i++)

@@ -14,11 +14,12 @@ struct visibility {
 	struct gl_target target;
 	struct visibility_program {
 		GLuint program;
-		GLint right, up, forward, lattice, number, cut;
+		GLint right, up, forward, range, lattice, number, cut;
 	} whole, section; /* section is for views with a section plane, built when first needed */
 	const struct visibility_program *used;
 	uint8_t *pixels; /* owned */
 	struct view view;
+	float far_m; /* far limit of the pass's depths, which have 16 bits */
 };
 
 struct visibility_point {
@@ -45,5 +46,8 @@ must_check int visibility_end(struct visibility *visibility);
 /* Writes what is visible at a pixel of the small picture; y counts upwards. Returns false where
  * there is nothing. */
 bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out);
+/* Returns the depth along the view's forward axis in metres at that pixel, INFINITY where there is
+ * nothing. */
+float visibility_depth_m(const struct visibility *visibility, int x, int y);
 
 #endif

@@ -22,10 +22,13 @@ static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
 /* Below this level, or with such a load, a lower rate of frames harms less than a still smaller
  * picture. */
 static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
+/* Below 0 a picture is drawn over several frames: from this share of it in each just there, where
+ * showing the last one costs no more than is gained, to the least. */
+static const float level_least = -0.4f, share_most = 0.67f, share_least = 0.16f;
 /* Where the parts of the effort begin to give way, in the order of what a picture loses for the
  * time that is gained (docs/figures.md, Levels of the governor): the scale first. */
 static const float level_faces = 0.4f, level_triangles = 0.2f, level_budget = 0.1f;
-/* At the lowest level: the share of the time budgets. */
+/* At level 0 and below: the share of the time budgets. */
 static const float budget_least = 0.25f;
 /* Fewer triangles cost the picture more than they save (docs/figures.md). */
 enum { FACES_LEAST = 1, TRIANGLES_LEAST = 60000 };
@@ -76,7 +79,7 @@ static void fall(struct governor *governor, float load)
 	}
 	if (load > load_high)
 		governor->level -= fminf(gain * (load - load_goal), fall_most);
-	governor->level = fmaxf(governor->level, 0);
+	governor->level = fmaxf(governor->level, level_least);
 }
 
 /* The rate rises last, and only if a frame then still has room. */
@@ -137,6 +140,14 @@ static float between(float level, float low, float high)
 	return fminf(fmaxf((level - low) / (high - low), 0), 1);
 }
 
+/* Returns how much of a picture is drawn in a frame. Each rise of the level adds the same part. */
+static float share_at(float level)
+{
+	if (level >= 0)
+		return 1;
+	return share_most * powf(share_least / share_most, level / level_least);
+}
+
 struct scene_effort governor_effort(const struct governor *governor)
 {
 	const float level = governor->level, least = governor->bounds.scale_least;
@@ -151,5 +162,6 @@ struct scene_effort governor_effort(const struct governor *governor)
 						       triangles))
 				     : UINT32_MAX,
 		.budget = budget_least + (1 - budget_least) * between(level, 0, level_budget),
+		.share = share_at(level),
 	};
 }

@@ -1,8 +1,8 @@
 /* The frame-time governor: a feedback controller that holds the frames of a moving eye at the
  * panel's rate, or at the highest divisor of it that the board can hold down to 30 a second. It
  * takes what harms least first: the picture's scale, then faces per piece, then the number of
- * triangles, then the time for uploads and planning. A board needs no description for that; bounds
- * are optional.
+ * triangles, then the time for uploads and planning, then how much of a picture is drawn in a
+ * frame. A board needs no description for that; bounds are optional.
  *
  * It gives way at once and comes back slowly, and there is a dead band between the two loads
  * (hysteresis), so that the picture does not breathe. Pure: no GL, no clock. */
@@ -19,7 +19,9 @@ struct governor_bounds {
 
 struct governor {
 	struct governor_bounds bounds;
-	float level;      /* 1: everything at full effort, 0: the least */
+	/* 1: everything at full effort, 0: the least with which each frame is drawn whole; below 0
+	 * frames show the last picture while the next one is drawn */
+	float level;
 	uint32_t divisor; /* refreshes of the panel for each frame */
 	uint32_t whole;   /* triangles of the last frame in which they were not limited */
 	float over;       /* load of the last frame, if it was too much; else 0 */

@@ -40,6 +40,9 @@ struct scene_effort {
 	uint32_t faces;     /* most that colour a piece */
 	uint32_t triangles; /* most that are drawn, besides triangle_budget */
 	float budget;       /* share of the time for uploads and planning, 0 to 1 */
+	/* Of a picture, how much is drawn in a frame, above 0; below 1, frames show the last
+	 * picture, moved to where the eye is (render/lumigraph/image_warp.h). */
+	float share;
 };
 extern const struct scene_effort scene_effort_full;
 

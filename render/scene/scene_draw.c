@@ -13,6 +13,7 @@
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_picture.h"
 #include "render/scene/scene_plan.h"
+#include "render/scene/scene_reference.h"
 #include "render/scene/scene_scenery.h"
 #include "render/scene/scene_stream.h"
 #include "render/scene/scene_visibility.h"
@@ -215,7 +216,8 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	}
 	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
-	bool counted = scene_take_visibility(scene, moved);
+	bool counted = scene_is_warped(scene) ? scene_build_reference(scene)
+					      : scene_take_visibility(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->depth_is_stale = false;
@@ -295,7 +297,7 @@ static void show(struct scene *scene, const struct gl_place *place, bool moved, 
 	const struct view *view = &scene->view;
 	if (moved)
 		accumulation_break(&scene->accumulation);
-	if (show_enlarged(scene, place))
+	if (scene_show_reference(scene, place) || show_enlarged(scene, place))
 		return;
 	const bool draws = changed || !accumulation_is_done(&scene->accumulation);
 	if (moved || accumulation_prepare(&scene->accumulation, view->width_px, view->height_px,
@@ -346,6 +348,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->tools_moved = false;
 	scene->still_frames = moved ? 0 : scene->still_frames + 1;
 	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;
+	scene_note_motion(scene, &view, passed);
+	scene->camera = *camera;
 	scene->view = view;
 	scene->has_view = true;
 	prepare(scene, moved, passed, out);
@@ -370,8 +374,14 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	else if (scene->image_share < 0)
 		scene->image_share = count_share(scene);
 	out->image_share = scene->image_share;
-	if (!still)
+	if (!still) {
+		scene->references.is_kept = false;
 		return;
+	}
+	if (scene->effort.share < 1)
+		scene_keep_reference(scene);
+	else
+		scene_drop_references(scene);
 	enlargement_let_go(&scene->enlargement);
 	outline_let_go(&scene->outline);
 	accumulation_let_go(&scene->accumulation, &place);

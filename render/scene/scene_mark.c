@@ -26,8 +26,9 @@ bool scene_note_mark(struct scene *scene, const struct scene_mark *mark)
 
 /* Calls visit for each visible piece that the marked part may cover: by its labels, and by its
  * region on patches whose labels are not here. */
-static void each_piece(struct scene *scene, bool by_labels,
-		       void (*visit)(struct scene *, const struct visible_piece *))
+static void each_piece(struct scene *scene, const struct view *view, bool by_labels,
+		       void (*visit)(struct scene *, const struct view *,
+				     const struct visible_piece *))
 {
 	if (!by_labels && scene->marked_region.kind == REGION_POINT)
 		return;
@@ -41,27 +42,29 @@ static void each_piece(struct scene *scene, bool by_labels,
 		if (has_labels ? !part_buffers_are_empty(&patch->part)
 			       : region_meets_sphere(&scene->marked_region, piece->centre_m,
 						     piece->radius_m))
-			visit(scene, v);
+			visit(scene, view, v);
 	}
 }
 
-static void include(struct scene *scene, const struct visible_piece *v)
+static void include(struct scene *scene, const struct view *view, const struct visible_piece *v)
 {
 	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 	const struct piece *piece = &patch->content.bvh.pieces[v->piece];
-	outline_include(&scene->outline, &scene->view, piece->centre_m, piece->radius_m);
+	outline_include(&scene->outline, view, piece->centre_m, piece->radius_m);
 }
 
-static void draw_region(struct scene *scene, const struct visible_piece *v)
+static void draw_region(struct scene *scene, const struct view *view, const struct visible_piece *v)
 {
+	(void)view;
 	const struct piece *piece = &scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
 	geometry_bind(&scene->geometry, v->patch);
 	geometry_draw(piece->first_triangle, piece->triangle_count);
 }
 
 /* The area of a part is that of the whole patch, so the first of its pieces draws it. */
-static void draw_area(struct scene *scene, const struct visible_piece *v)
+static void draw_area(struct scene *scene, const struct view *view, const struct visible_piece *v)
 {
+	(void)view;
 	if (v > scene->visible && v[-1].patch == v->patch)
 		return;
 	geometry_bind(&scene->geometry, v->patch);
@@ -73,8 +76,8 @@ void scene_draw_mask(struct scene *scene, const struct view *view, const struct 
 	outline_clear(&scene->outline);
 	if (!scene->is_marked)
 		return;
-	each_piece(scene, true, include);
-	each_piece(scene, false, include);
+	each_piece(scene, view, true, include);
+	each_piece(scene, view, false, include);
 	if (outline_is_empty(&scene->outline))
 		return;
 	int rc = outline_begin(&scene->outline, picture, scene->view.width_px,
@@ -85,8 +88,8 @@ void scene_draw_mask(struct scene *scene, const struct view *view, const struct 
 		return;
 	}
 	mark_begin(&scene->mark, view, &scene->root, &scene->marked_region);
-	each_piece(scene, false, draw_region);
+	each_piece(scene, view, false, draw_region);
 	part_renderer_begin(&scene->part, view, &scene->root);
-	each_piece(scene, true, draw_area);
+	each_piece(scene, view, true, draw_area);
 	outline_end(&scene->outline);
 }

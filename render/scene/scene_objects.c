@@ -67,7 +67,7 @@ static int make_atlases(struct scene *scene)
 /* ---- life */
 
 const struct scene_effort scene_effort_full = {
-	.scale = 1, .faces = PLAN_ENTRIES, .triangles = UINT32_MAX, .budget = 1
+	.scale = 1, .faces = PLAN_ENTRIES, .triangles = UINT32_MAX, .budget = 1, .share = 1
 };
 
 int scene_create(struct scene **out, const struct scene_options *options)
@@ -137,6 +137,7 @@ static void forget(struct scene *scene)
 	scene->visible_count = scene->leaving_count = 0;
 	scene->counted_count = scene->want_count = 0;
 	scene->counting = scene->depth_task.is_begun = false;
+	scene->references.has_shown = scene->references.is_begun = false;
 }
 
 void scene_destroy(struct scene *scene)
@@ -151,6 +152,9 @@ void scene_destroy(struct scene *scene)
 	outline_finish(&scene->outline);
 	accumulation_finish(&scene->accumulation);
 	enlargement_finish(&scene->enlargement);
+	for (int i = 0; i < 2; i++)
+		image_warp_let_go(&scene->references.of[i]);
+	image_warp_finish(&scene->references.warp);
 	visibility_finish(&scene->visibility);
 	surface_finish(&scene->surface);
 	backdrop_finish(&scene->backdrop.picture);

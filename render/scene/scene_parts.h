@@ -8,6 +8,7 @@
 #include "render/lumigraph/backdrop.h"
 #include "render/lumigraph/depth.h"
 #include "render/lumigraph/enlargement.h"
+#include "render/lumigraph/image_warp.h"
 #include "render/lumigraph/outline.h"
 #include "render/lumigraph/surface.h"
 #include "render/lumigraph/tiles.h"
@@ -54,6 +55,32 @@ struct visible_piece {
 	float pixels; /* pixels that its bounding sphere covers on the screen */
 	int program;  /* program of the surface that draws it in this picture; negative: none */
 	struct dissolve_range range;
+};
+
+/* Pieces that are drawn a part at a time. */
+struct scene_slice {
+	struct visible_piece *pieces; /* borrowed */
+	uint32_t count;
+	uint32_t with[SURFACE_PROGRAMS]; /* how many each program draws */
+	int program;                     /* that draws now; negative: all are drawn */
+	uint32_t at;                     /* the next piece that may be its */
+};
+
+/* The pictures that are warped where frames take too long (scene_reference.h). */
+struct scene_references {
+	struct image_warp warp;
+	struct image_warp_reference of[2];
+	int shown; /* of the two, if has_shown */
+	bool has_shown;
+	bool is_begun;            /* the other one is being drawn */
+	bool is_read;             /* its visibility pass was read back */
+	uint32_t since_depth;     /* frames since one was left to depths of faces */
+	bool is_kept;             /* the one that is shown next was drawn at rest, for this view */
+	uint32_t numbered;        /* of its pieces, the first that are in the pass */
+	float cost;               /* of all of it, in triangles of the pass */
+	struct scene_slice slice; /* of the picture */
+	/* How the eye moves, in metres and parts of a direction for each millisecond. */
+	float eye_speed[3], turn_speed[3], frame_ms;
 };
 
 /* A face whose depths are being drawn from the patches of scene.around. */
@@ -126,6 +153,7 @@ struct scene {
 	struct accumulation accumulation;
 	struct enlargement enlargement;
 	struct visibility visibility;
+	struct scene_references references;
 
 	bool programs_wait;     /* new ones for the next picture, pieces have fewer faces */
 	uint32_t refused;       /* number of objects that could not be used */
@@ -169,14 +197,16 @@ struct scene {
 	struct scene_tools tools;
 	bool tools_moved; /* changed since the last frame */
 	/* The current frame. */
+	struct camera camera;
 	struct view view;
 	bool has_view;
 	int64_t frame_us;
 	/* owned; pieces of the cut, then of the patches it is replacing */
 	struct visible_piece *visible;
 	uint32_t visible_count, leaving_count, visible_room;
-	struct visible_piece *counted; /* those numbered in the current visibility pass; owned */
-	uint32_t counted_count, counted_room;
+	/* Owned: those numbered in the current visibility pass, then others of the same picture. */
+	struct visible_piece *counted;
+	uint32_t counted_count, counted_all, counted_room;
 	uint64_t counting_cut;  /* cut_signature when the pass began */
 	bool counting;          /* a part of the pass is drawn */
 	uint32_t counted_drawn; /* that many of its pieces */

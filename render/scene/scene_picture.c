@@ -1,6 +1,8 @@
 /* Draws pieces program by program, and what else a picture has. */
 #include "render/scene/scene_picture.h"
 
+#include <math.h>
+
 #include "base/clock.h"
 #include "render/scene/scene_backdrop.h"
 #include "render/scene/scene_plan.h"
@@ -8,6 +10,10 @@
 #include "render/scene/scene_stream.h"
 
 enum { NEW_BUDGET_US = 30000 }; /* for the first triangles with a program */
+
+/* What a triangle and a seen pixel take of a picture, in triangles of the visibility pass, by two
+ * cores without a GPU. */
+static const float triangle_cost = 1.4f, fragment_cost = 0.4f;
 
 /* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
  * uniforms of their own are drawn together. */
@@ -58,74 +64,109 @@ static int choose_program(const struct scene *scene, const struct surface_frame 
 			      v->range);
 }
 
-static void draw_with(struct scene *scene, const struct surface_frame *frame, int program)
+float scene_piece_cost(const struct scene *scene, const struct visible_piece *v, float picture_px)
 {
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	struct run run = { .patch = HIERARCHY_NONE };
-	surface_begin(&scene->surface, frame, program);
-	for (uint32_t i = 0; i < count; i++)
-		if (scene->visible[i].program == program)
-			draw_piece(scene, frame, &scene->visible[i], &run);
-	end_run(&run);
+	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+	const struct piece_state *state = &patch->pieces[v->piece];
+	const float seen_px = state->counted ? state->seen_px : v->pixels;
+	return triangle_cost * (float)patch->content.bvh.pieces[v->piece].triangle_count +
+	       fragment_cost * seen_px * picture_px / scene->view.picture_px;
 }
 
-/* Gives the pieces of a program to the one for a face less. */
-static void do_without(struct scene *scene, int program, uint32_t with[SURFACE_PROGRAMS])
+/* Draws pieces of the slice's program until the cost is reached. Returns that of those it drew. */
+static float draw_with(struct scene *scene, const struct surface_frame *frame,
+		       struct scene_slice *slice, float cost)
 {
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	for (uint32_t i = 0; i < count; i++)
-		if (scene->visible[i].program == program)
-			scene->visible[i].program--;
-	with[program - 1] += with[program];
+	struct run run = { .patch = HIERARCHY_NONE };
+	float drawn = 0;
+	surface_begin(&scene->surface, frame, slice->program);
+	for (; slice->at < slice->count && drawn < cost; slice->at++) {
+		const struct visible_piece *v = &slice->pieces[slice->at];
+		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		/* between two slices it may have been dropped */
+		if (v->program != slice->program || !patch->pieces)
+			continue;
+		draw_piece(scene, frame, v, &run);
+		drawn += scene_piece_cost(scene, v, frame->view->picture_px);
+	}
+	end_run(&run);
+	return drawn;
+}
+
+/* Gives the pieces of the slice's program to the one for a face less. */
+static void do_without(struct scene *scene, struct scene_slice *slice)
+{
+	const int program = slice->program;
+	for (uint32_t i = 0; i < slice->count; i++)
+		if (slice->pieces[i].program == program)
+			slice->pieces[i].program--;
+	slice->with[program - 1] += slice->with[program];
+	slice->with[program] = 0;
 	scene->programs_wait = true;
+}
+
+void scene_begin_slices(struct scene *scene, const struct surface_frame *frame,
+			struct visible_piece *pieces, uint32_t count, struct scene_slice *out)
+{
+	*out = (struct scene_slice){ .pieces = pieces,
+				     .count = count,
+				     .program = SURFACE_PROGRAMS - 1 };
+	for (uint32_t i = 0; i < count; i++) {
+		struct visible_piece *v = &pieces[i];
+		v->program = choose_program(scene, frame, v);
+		if (v->program >= 0)
+			out->with[v->program]++;
+	}
+	scene->programs_wait = false;
 }
 
 /* Draws program by program, so that each sets its uniforms once. When the first images come, nearly
  * all of them are new, and without a GPU a frame that begins with all takes up to two seconds. */
-static void draw_pieces(struct scene *scene, const struct surface_frame *frame)
+bool scene_draw_slice(struct scene *scene, const struct surface_frame *frame,
+		      struct scene_slice *slice, float cost)
 {
-	const uint32_t count = scene->visible_count + scene->leaving_count;
-	uint32_t with[SURFACE_PROGRAMS] = { 0 };
 	int64_t new_us = 0;
-	for (uint32_t i = 0; i < count; i++) {
-		struct visible_piece *v = &scene->visible[i];
-		v->program = choose_program(scene, frame, v);
-		if (v->program >= 0)
-			with[v->program]++;
-	}
-	scene->programs_wait = false;
-	for (int program = SURFACE_PROGRAMS - 1; program >= 0; program--) {
+	for (float drawn = 0; slice->program >= 0; slice->program--, slice->at = 0) {
+		const int program = slice->program;
 		const bool can_wait = surface_faces(program) > 0 && !frame->shares;
-		if (with[program] == 0)
+		const bool is_new = surface_is_new(&scene->surface, frame, program);
+		if (slice->with[program] == 0)
 			continue;
-		if (!surface_is_new(&scene->surface, frame, program)) {
-			draw_with(scene, frame, program);
-		} else if (can_wait && new_us > NEW_BUDGET_US) {
-			do_without(scene, program, with);
-		} else {
-			const int64_t began_us = clock_now_us();
-			draw_with(scene, frame, program);
-			new_us += clock_now_us() - began_us;
+		if (is_new && can_wait && new_us > NEW_BUDGET_US) {
+			do_without(scene, slice);
+			continue;
 		}
+		const int64_t began_us = is_new ? clock_now_us() : 0;
+		drawn += draw_with(scene, frame, slice, cost - drawn);
+		new_us += is_new ? clock_now_us() - began_us : 0;
+		if (slice->at < slice->count)
+			break;
 	}
 	geometry_cull_none();
+	return slice->program < 0;
+}
+
+void scene_resume_picture(void)
+{
+	glDisable(GL_BLEND);
+	glEnable(GL_DEPTH_TEST);
+	glDepthMask(GL_TRUE);
+	glDepthFunc(GL_LESS);
 }
 
 void scene_begin_picture(const struct scene *scene)
 {
 	const uint8_t *sky = scene->root.background;
-	glDisable(GL_BLEND);
-	glEnable(GL_DEPTH_TEST);
-	glDepthMask(GL_TRUE);
-	glDepthFunc(GL_LESS);
+	scene_resume_picture();
 	glClearColor(sky[0] / 255.0f, sky[1] / 255.0f, sky[2] / 255.0f, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void scene_draw_picture(struct scene *scene, const struct view *view, enum picture kind)
+struct surface_frame scene_surface_frame(const struct scene *scene, const struct view *view,
+					 enum picture kind)
 {
-	bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
-	const struct surface_frame frame = {
+	const bool images = scene->options.mode != SCENE_POLYGONS && scene->repository.ready;
+	return (struct surface_frame){
 		.view = view,
 		.root = &scene->root,
 		.tiles = images ? &scene->tiles : NULL,
@@ -137,9 +178,22 @@ void scene_draw_picture(struct scene *scene, const struct view *view, enum pictu
 		.shares = kind == PICTURE_SHARES,
 		.is_direct = kind == PICTURE_DIRECT,
 	};
-	draw_pieces(scene, &frame);
-	scene_draw_stream(scene, &frame);
-	if (!frame.shares)
-		scene_draw_backdrop(scene, view);
-	scene_draw_scenery(scene, &frame);
+}
+
+void scene_draw_beside(struct scene *scene, const struct surface_frame *frame)
+{
+	scene_draw_stream(scene, frame);
+	if (!frame->shares)
+		scene_draw_backdrop(scene, frame->view);
+	scene_draw_scenery(scene, frame);
+}
+
+void scene_draw_picture(struct scene *scene, const struct view *view, enum picture kind)
+{
+	const struct surface_frame frame = scene_surface_frame(scene, view, kind);
+	struct scene_slice slice;
+	scene_begin_slices(scene, &frame, scene->visible,
+			   scene->visible_count + scene->leaving_count, &slice);
+	scene_draw_slice(scene, &frame, &slice, INFINITY);
+	scene_draw_beside(scene, &frame);
 }

@@ -35,14 +35,15 @@ static bool is_due(const struct scene *scene, bool moved)
 	       vec_distance(scene->visibility_forward, scene->view.forward) > limit * turned;
 }
 
-/* Draws the listed pieces with numbers from `from` to below `to`. */
-static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
+void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 {
 	uint32_t bound = HIERARCHY_NONE;
 	for (uint32_t i = from; i < to; i++) {
 		const struct visible_piece *v = &scene->counted[i];
-		const struct piece *piece =
-			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
+		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		if (!patch->pieces)
+			continue; /* dropped since the pass began */
+		const struct piece *piece = &patch->content.bvh.pieces[v->piece];
 		if (v->patch != bound)
 			geometry_bind(&scene->geometry, v->patch);
 		bound = v->patch;
@@ -51,19 +52,19 @@ static void draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 	}
 }
 
-/* Begins a pass over the pieces that are in the frustum now. */
-static bool begin(struct scene *scene)
+bool scene_begin_visibility(struct scene *scene)
 {
-	if (ARRAY_RESERVE(scene->counted, scene->counted_room, scene->visible_count, UINT32_MAX) <
-	    0) {
+	const uint32_t all = scene->visible_count + scene->leaving_count;
+	if (ARRAY_RESERVE(scene->counted, scene->counted_room, all, UINT32_MAX) < 0) {
 		scene->lacked_memory = true;
 		return false;
 	}
 	scene->counted_count = scene->visible_count < VISIBILITY_PIECES_MAX ? scene->visible_count
 									    : VISIBILITY_PIECES_MAX;
-	if (scene->counted_count > 0)
-		memcpy(scene->counted, scene->visible,
-		       scene->counted_count * sizeof(*scene->counted));
+	scene->counted_all = all;
+	if (all > 0)
+		memcpy(scene->counted, scene->visible, all * sizeof(*scene->counted));
+	scene->references.is_begun = false;
 	scene->counting_cut = scene->cut_signature;
 	visibility_begin(&scene->visibility, &scene->view, &scene->root);
 	return true;
@@ -86,14 +87,14 @@ static bool draw(struct scene *scene, bool moved)
 	} else {
 		/* A pass that had to begin again is drawn at once, or it might never end. */
 		parts = scene->counting ? 1 : parts;
-		if (!begin(scene))
+		if (!scene_begin_visibility(scene))
 			return false;
 		scene->counted_drawn = 0;
 	}
 	const uint32_t left = scene->counted_count - scene->counted_drawn;
 	const uint32_t part = (scene->counted_count + parts - 1) / parts;
 	const uint32_t to = scene->counted_drawn + (part < left ? part : left);
-	draw_numbers(scene, scene->counted_drawn, to);
+	scene_draw_numbers(scene, scene->counted_drawn, to);
 	scene->counted_drawn = to;
 	scene->counting = to < scene->counted_count;
 	return !scene->counting;
@@ -109,12 +110,14 @@ static int nearest_probe(const struct piece_state *state, const float at_m[3])
 	return nearest;
 }
 
+/* Returns NULL where its patch was dropped since the pass began. */
 static struct piece_state *state_of(const struct scene *scene, uint32_t visible)
 {
 	if (visible >= scene->counted_count)
 		return NULL;
 	const struct visible_piece *v = &scene->counted[visible];
-	return &scene->geometry.patches[v->patch].pieces[v->piece];
+	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+	return patch->pieces ? &patch->pieces[v->piece] : NULL;
 }
 
 /* Counts a visible point. The point of a piece farthest from every probe is kept in stray_m and
@@ -143,6 +146,8 @@ static void count_all(struct scene *scene)
 	struct visibility_point point;
 	for (uint32_t i = 0; i < scene->counted_count; i++) {
 		struct piece_state *state = state_of(scene, i);
+		if (!state)
+			continue;
 		state->seen_px = state->stray_off_m = 0;
 		memset(state->weight, 0, sizeof(state->weight));
 	}
@@ -156,6 +161,8 @@ static void count_all(struct scene *scene)
 static void move_probe(struct scene *scene, uint32_t visible)
 {
 	struct piece_state *state = state_of(scene, visible);
+	if (!state)
+		return;
 	const struct visible_piece *v = &scene->counted[visible];
 	const struct patch_bvh *bvh = &scene->geometry.patches[v->patch].content.bvh;
 	const struct piece *piece = &bvh->pieces[v->piece];
@@ -184,12 +191,15 @@ static void move_probe(struct scene *scene, uint32_t visible)
 static void conclude(struct scene *scene, const struct visible_piece *visible)
 {
 	struct geometry_patch *patch = &scene->geometry.patches[visible->patch];
+	if (!patch->pieces)
+		return;
 	struct piece_state *state = &patch->pieces[visible->piece];
 	if (patch->sides == SIDES_UNKNOWN && !view_is_cut(&scene->visibility.view))
 		patch->sides = SIDES_FRONT;
 	for (int k = 0; k < PIECE_PROBES && state->seen_px > 0; k++)
 		state->weight[k] /= state->seen_px;
-	state->seen_px *= scene->view.picture_px / (VISIBILITY_WIDTH * VISIBILITY_HEIGHT);
+	state->seen_px *=
+		scene->visibility.view.picture_px / (VISIBILITY_WIDTH * VISIBILITY_HEIGHT);
 	state->counted = true;
 	state->planned = false;
 }
@@ -203,19 +213,27 @@ static void sum_patches(struct scene *scene)
 		scene->seen_px[scene->cut.patches[i]] = 0;
 	float all_px = 0;
 	for (uint32_t i = 0; i < scene->counted_count; i++) {
-		float seen_px = state_of(scene, i)->seen_px;
+		const struct piece_state *state = state_of(scene, i);
+		const float seen_px = state ? state->seen_px : 0;
 		scene->seen_px[scene->counted[i].patch] += seen_px;
 		all_px += seen_px;
 	}
-	scene->filled = all_px / scene->view.picture_px;
+	scene->filled = all_px / scene->visibility.view.picture_px;
 }
 
 bool scene_take_visibility(struct scene *scene, bool moved)
 {
 	if (!scene->counting && !is_due(scene, moved))
 		return false;
-	if (!draw(scene, moved) || visibility_end(&scene->visibility) < 0)
-		return true;
+	if (draw(scene, moved))
+		scene_end_visibility(scene);
+	return true;
+}
+
+void scene_end_visibility(struct scene *scene)
+{
+	if (visibility_end(&scene->visibility) < 0)
+		return;
 	count_all(scene);
 	for (int round = 0; round < PROBE_MOVES; round++) {
 		for (uint32_t i = 0; i < scene->counted_count; i++)
@@ -226,12 +244,11 @@ bool scene_take_visibility(struct scene *scene, bool moved)
 		conclude(scene, &scene->counted[i]);
 	sum_patches(scene);
 	scene->visibility_us = clock_now_us();
-	scene->visibility_cut = scene->cut_signature;
+	scene->visibility_cut = scene->counting_cut;
 	memcpy(scene->visibility_section, scene->visibility.view.cut,
 	       sizeof(scene->visibility_section));
 	memcpy(scene->visibility_eye_m, scene->visibility.view.eye_m,
 	       sizeof(scene->visibility_eye_m));
 	memcpy(scene->visibility_forward, scene->visibility.view.forward,
 	       sizeof(scene->visibility_forward));
-	return true;
 }

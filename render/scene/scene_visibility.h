@@ -8,4 +8,12 @@
  * Returns whether anything was drawn for it. */
 bool scene_take_visibility(struct scene *scene, bool moved);
 
+/* The same in steps. Begins a pass of the listed pieces in the view of the frame; false: without
+ * memory for it. */
+bool scene_begin_visibility(struct scene *scene);
+/* Draws those of scene->counted from `from` to below `to`, in the pass's target. */
+void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to);
+/* Reads the pass back and counts. */
+void scene_end_visibility(struct scene *scene);
+
 #endif

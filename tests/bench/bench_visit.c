@@ -3,7 +3,7 @@
  *
  *   bench_visit RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--link MBIT] [--latency MS]
  *               [--price PX] [--load none|core|heat] [--level L] [--times N]
- *               [--effort SCALE,TRIANGLES,FACES,BUDGET] [--keep yes]
+ *               [--effort SCALE,TRIANGLES,FACES,BUDGET[,SHARE]] [--keep yes]
  *
  * A frame takes the time that its work takes on two cores (stage.h, work_clock), so other work on
  * the machine hardly changes what is measured, and neither does the comparison with the truth. The
@@ -401,10 +401,10 @@ static void report_frames(const struct bench *bench)
 			"{\"at_ms\": %.1f, \"leg\": %u, \"rests\": %d, \"spent_ms\": %.2f, "
 			"\"wall_ms\": %.2f, \"thread_ms\": %.2f, \"level\": %.2f, \"scale\": %.3f, "
 			"\"faces\": %u, \"divisor\": %u, \"triangles\": %u, \"uploads\": %u, "
-			"\"depths\": %u, \"psnr\": %.2f}\n",
+			"\"depths\": %u, \"share\": %.3f, \"psnr\": %.2f}\n",
 			(double)s->at_us / 1000, s->leg, s->rests, s->spent_ms, s->wall_ms,
 			s->thread_ms, (double)s->level, (double)s->effort.scale, s->effort.faces,
-			s->divisor, s->triangles, s->uploads, s->depths,
+			s->divisor, s->triangles, s->uploads, s->depths, (double)s->effort.share,
 			isnan(s->psnr) ? -1 : s->psnr);
 	}
 	if (file)
@@ -452,8 +452,9 @@ static void read_option(struct bench *bench, const char *name, const char *value
 	} else if (!strcmp(name, "--effort")) {
 		struct scene_effort *e = &bench->effort;
 
-		if (sscanf(value, "%f,%u,%u,%f", &e->scale, &e->triangles, &e->faces, &e->budget) !=
-		    4)
+		e->share = 1;
+		if (sscanf(value, "%f,%u,%u,%f,%f", &e->scale, &e->triangles, &e->faces, &e->budget,
+			   &e->share) < 4)
 			stage_die(value, -EINVAL);
 		bench->is_held = true;
 	} else if (!strcmp(name, "--load"))

@@ -7,10 +7,10 @@
 
 enum { REFRESH_US = 16667, WHOLE = 300000 /* triangles in sight */ };
 
-/* A board: the fixed time of a frame, that of all pixels at full size, of all triangles, and how
- * much slower than usual it is now. */
+/* A board: the fixed time of a frame, that of all pixels at full size, of all triangles, of showing
+ * a reference picture, and how much slower than usual it is now. */
 struct board {
-	float fixed_ms, pixels_ms, triangles_ms, slowness;
+	float fixed_ms, pixels_ms, triangles_ms, warp_ms, slowness;
 };
 
 /* A visit of frames in a row, on simulated time. */
@@ -43,8 +43,9 @@ static float frame(struct visit *visit)
 	const struct board *b = &visit->board;
 	const float area = effort.scale * effort.scale, faces = 0.4f + 0.15f * (float)effort.faces;
 	const uint32_t triangles = effort.triangles < WHOLE ? effort.triangles : WHOLE;
-	float ms = b->fixed_ms + b->pixels_ms * area * faces +
-		   b->triangles_ms * (float)triangles / (float)WHOLE;
+	float ms = b->fixed_ms + (effort.share < 1 ? b->warp_ms : 0) +
+		   effort.share * (b->pixels_ms * area * faces +
+				   b->triangles_ms * (float)triangles / (float)WHOLE);
 
 	ms *= b->slowness * (1 + 0.04f * noise(visit));
 	governor_note(&visit->governor, (int64_t)(1000 * ms), triangles);
@@ -66,8 +67,8 @@ static float play(struct visit *visit, float for_ms)
 	return most;
 }
 
-static const struct board strong = { 1, 4, 1, 1 }, middling = { 4, 9, 3, 1 },
-			  weak = { 8, 30, 10, 1 }, weakest = { 20, 200, 60, 1 };
+static const struct board strong = { 1, 4, 1, 1, 1 }, middling = { 4, 9, 3, 2, 1 },
+			  weak = { 8, 30, 10, 3, 1 }, weakest = { 12, 200, 60, 10, 1 };
 
 static void a_strong_board_draws_everything_at_the_panels_rate(void **state)
 {
@@ -89,6 +90,18 @@ static void a_weak_board_reaches_thirty_a_second_within_a_second(void **state)
 	CHECK(play(&visit, 10000) < 1.1f * 2 * REFRESH_US / 1000);
 }
 
+/* Its pictures take twice as long as a frame may, at the least effort. */
+static void the_weakest_board_reaches_thirty_a_second_over_several_frames(void **state)
+{
+	struct visit visit;
+	(void)state;
+	begin(&visit, weakest);
+	play(&visit, 2000);
+	const float share = governor_effort(&visit.governor).share;
+	CHECK(share < 0.8f && share > 0.2f);
+	CHECK(play(&visit, 10000) < 1.1f * 2 * REFRESH_US / 1000);
+}
+
 static void the_scale_gives_way_before_faces_and_these_before_triangles(void **state)
 {
 	struct governor governor;
@@ -96,7 +109,7 @@ static void the_scale_gives_way_before_faces_and_these_before_triangles(void **s
 	(void)state;
 	governor_init(&governor, &(struct governor_bounds){ .scale_least = 0.5f });
 	governor.whole = WHOLE;
-	for (int i = 0; i < 100; i++) {
+	for (int i = 0; i < 140; i++) {
 		governor.level = 1 - (float)i / 100;
 		const struct scene_effort effort = governor_effort(&governor);
 		CHECK(effort.scale <= last.scale && effort.triangles <= last.triangles);
@@ -104,6 +117,8 @@ static void the_scale_gives_way_before_faces_and_these_before_triangles(void **s
 		CHECK(effort.faces == scene_effort_full.faces || effort.scale == 0.5f);
 		CHECK(effort.triangles >= WHOLE || effort.faces == 1);
 		CHECK(effort.budget == 1 || effort.triangles <= WHOLE / 5);
+		CHECK(effort.share <= last.share && effort.share > 0.15f);
+		CHECK(effort.share == 1 || effort.budget == 0.25f);
 		last = effort;
 	}
 }
@@ -187,6 +202,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_strong_board_draws_everything_at_the_panels_rate),
 		cmocka_unit_test(a_weak_board_reaches_thirty_a_second_within_a_second),
+		cmocka_unit_test(the_weakest_board_reaches_thirty_a_second_over_several_frames),
 		cmocka_unit_test(the_scale_gives_way_before_faces_and_these_before_triangles),
 		cmocka_unit_test(it_gives_way_within_300_ms_and_comes_back),
 		cmocka_unit_test(a_slowing_clock_is_followed_without_late_frames),

@@ -503,6 +503,137 @@ static void a_mark_is_as_wide_over_an_enlarged_picture(void **state)
 	strike_stage(&stage);
 }
 
+/* Draws one frame from an eye that has gone aside, at half the scale. */
+static void draw_aside(struct stage *stage, float aside_m, float share, const struct region *region,
+		       uint8_t *rgba)
+{
+	struct scene_effort effort = scene_effort_full;
+	struct camera camera = usual_camera;
+	effort.scale = 0.5f;
+	effort.share = share;
+	for (int k = 0; k < 2; k++) {
+		camera.eye_m[k] += 0.7f * aside_m;
+		camera.target_m[k] += 0.1f * aside_m;
+	}
+	scene_spend(stage->scene, &effort);
+	draw(stage, &camera, region);
+	CHECK(gl_target_read(&stage->target, rgba) == 0);
+}
+
+/* While the next one is drawn in slices, each frame shows the last one as the eye sees it. */
+static void a_warped_picture_is_that_of_the_eye(void **state)
+{
+	uint8_t *whole = malloc(4 * WIDTH * HEIGHT), *warped = malloc(4 * WIDTH * HEIGHT);
+	uint8_t *old = malloc(4 * WIDTH * HEIGHT);
+	const struct scene_references *r;
+	struct stage stage;
+	uint32_t changes = 0;
+	int shown = -1;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	r = &stage.scene->references;
+	draw_aside(&stage, 0, 1, NULL, old);
+	CHECK(!r->has_shown);
+	for (int i = 1; i <= 48; i++) {
+		const float aside_m = 0.025f * (float)i;
+		draw_aside(&stage, aside_m, 0.2f, NULL, warped);
+		CHECK(r->has_shown);
+		changes += shown >= 0 && r->shown != shown;
+		shown = r->shown;
+		if (i < 24)
+			continue;
+		draw_aside(&stage, aside_m, 1, NULL, whole); /* not moved, but drawn directly */
+		CHECK(difference(warped, whole) < difference(old, whole) / 10);
+		CHECK(difference(warped, whole) > 0);
+	}
+	keep_picture("warped", warped);
+	keep_picture("warped-whole", whole);
+	CHECK(changes >= 3 && changes <= 10); /* drawn in slices, not in each frame */
+	free(whole);
+	free(warped);
+	free(old);
+	strike_stage(&stage);
+}
+
+/* What a motion begins with is there before it begins, where it must be: it takes memory. */
+static void a_resting_eye_keeps_a_picture_for_the_next_motion(void **state)
+{
+	uint8_t *rgba = malloc(4 * WIDTH * HEIGHT);
+	const struct scene_references *r;
+	struct scene_effort effort = scene_effort_full;
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	r = &stage.scene->references;
+	CHECK(!r->has_shown && !r->of[0].picture.framebuffer && !r->of[1].picture.framebuffer);
+	effort.scale = 0.5f;
+	effort.share = 0.2f;
+	scene_spend(stage.scene, &effort);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(r->has_shown && !r->is_begun);
+	const struct view kept = r->of[r->shown].view;
+	CHECK(memcmp(kept.eye_m, usual_camera.eye_m, sizeof(kept.eye_m)) == 0);
+	draw_aside(&stage, 0.01f, 0.2f, NULL, rgba);
+	draw_aside(&stage, 0.02f, 0.2f, NULL, rgba);
+	CHECK(stage.frame.moved && r->is_begun);
+	CHECK(memcmp(&kept, &r->of[r->shown].view, sizeof(kept)) == 0);
+	scene_spend(stage.scene, &scene_effort_full);
+	settle(&stage, &usual_camera, NULL);
+	CHECK(!r->has_shown && !r->of[0].picture.framebuffer && !r->of[1].picture.framebuffer);
+	free(rgba);
+	strike_stage(&stage);
+}
+
+/* An eye that is suddenly elsewhere sees a picture of that place at once; so does one of another
+ * release, in the middle of a picture. */
+static void a_jump_shows_nothing_of_the_old_place(void **state)
+{
+	uint8_t *whole = malloc(4 * WIDTH * HEIGHT), *warped = malloc(4 * WIDTH * HEIGHT);
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	for (int i = 0; i < 3; i++)
+		draw_aside(&stage, 0.01f * (float)i, 0.2f, NULL, warped);
+	draw_aside(&stage, 8, 0.2f, NULL, warped);
+	CHECK(stage.scene->references.has_shown);
+	draw_aside(&stage, 8, 1, NULL, whole);
+	CHECK(difference(warped, whole) < 60);
+	for (int i = 1; i <= 2; i++) /* one of them may be for depths of a face */
+		draw_aside(&stage, 8 + 0.01f * (float)i, 0.2f, NULL, warped);
+	CHECK(stage.scene->references.is_begun);
+	CHECK(scene_open(stage.scene, stage.release->root, stage.release->root_bytes) == 0);
+	CHECK(!stage.scene->references.has_shown && !stage.scene->references.is_begun);
+	settle(&stage, &usual_camera, NULL);
+	free(whole);
+	free(warped);
+	strike_stage(&stage);
+}
+
+static void a_warped_picture_has_the_mark(void **state)
+{
+	const struct region pillar = { .kind = REGION_BOX,
+				       .centre_m = { 4, -4, 2.2f },
+				       .half_m = { 1.2f, 1.2f, 1.7f } };
+	uint8_t *bare = malloc(4 * WIDTH * HEIGHT), *marked = malloc(4 * WIDTH * HEIGHT);
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	settle(&stage, &usual_camera, NULL);
+	for (int i = 1; i <= 12; i++)
+		draw_aside(&stage, 0.01f * (float)i, 0.2f, &pillar, marked);
+	keep_picture("warped-mark", marked);
+	for (int i = 1; i <= 12; i++)
+		draw_aside(&stage, 0.01f * (float)i, 0.2f, NULL, bare);
+	const uint32_t bold = pixels_changed(bare, marked, 60);
+	CHECK(bold > 100 && bold < WIDTH * HEIGHT / 8);
+	free(bare);
+	free(marked);
+	strike_stage(&stage);
+}
+
 static void a_mark_draws_its_border_and_leaves_the_rest(void **state)
 {
 	struct stage stage;
@@ -656,6 +787,10 @@ int main(int argc, char **argv)
 		cmocka_unit_test(an_enlarged_picture_has_the_same_colours_at_the_same_place),
 		cmocka_unit_test(a_picture_is_sharp_in_the_second_frame_of_a_stop),
 		cmocka_unit_test(a_mark_is_as_wide_over_an_enlarged_picture),
+		cmocka_unit_test(a_warped_picture_is_that_of_the_eye),
+		cmocka_unit_test(a_resting_eye_keeps_a_picture_for_the_next_motion),
+		cmocka_unit_test(a_jump_shows_nothing_of_the_old_place),
+		cmocka_unit_test(a_warped_picture_has_the_mark),
 		cmocka_unit_test(a_mark_draws_its_border_and_leaves_the_rest),
 		cmocka_unit_test(the_far_corner_of_a_site_looks_like_the_near_one),
 		cmocka_unit_test(regions_know_what_is_in_them),

@@ -1,0 +1,258 @@
+/* Finds the depths of the grid, places and orders its mesh on the processor, and draws it. */
+#include "render/lumigraph/image_warp.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec.h"
+
+/* Where nothing was seen: so far that only turns move it. */
+static const float sky_m = 1e6f;
+/* The ring of cells reaches out by so much of half the picture. */
+static const float ring = 0.5f;
+/* How far the eye may be from the reference's, as a share of what is nearest, and how far it may
+ * have turned: the cosine of 26 degrees. */
+static const float reach_share = 1, reach_cosine = 0.9f;
+/* Nearer than this share of the nearest depth a point counts as there: it is at the eye. */
+static const float least_share = 0.02f;
+
+static const char image_warp_vertex[] = "attribute vec4 a_point;\n"
+					"varying vec2 v_at;\n"
+					"void main() {\n"
+					"	v_at = a_point.zw;\n"
+					"	gl_Position = vec4(a_point.xy, 0.0, 1.0);\n"
+					"}\n";
+
+static const char image_warp_fragment[] = "uniform FINE sampler2D u_picture;\n"
+					  "varying vec2 v_at;\n"
+					  "void main() {\n"
+					  "	gl_FragColor = texture2D(u_picture, v_at);\n"
+					  "}\n";
+
+static int build(struct image_warp *warp)
+{
+	const struct gl_program_source source = {
+		.name = "warp",
+		.vertex = (const char *const[]){ image_warp_vertex, NULL },
+		.fragment = (const char *const[]){ gl_fine_fragment, image_warp_fragment, NULL },
+		.attributes = (const char *const[]){ "a_point", NULL },
+	};
+	int rc = gl_program_build(&warp->program, &source);
+	if (rc < 0)
+		return rc;
+	glUseProgram(warp->program);
+	glUniform1i(glGetUniformLocation(warp->program, "u_picture"), 0);
+	return 0;
+}
+
+int image_warp_begin(struct image_warp *warp, struct image_warp_reference *reference, int width_px,
+		     int height_px)
+{
+	struct gl_target *picture = &reference->picture;
+	int rc = warp->program ? 0 : build(warp);
+	if (rc < 0)
+		return rc;
+	if (picture->framebuffer && picture->width_px == width_px &&
+	    picture->height_px == height_px) {
+		gl_target_bind(picture);
+		return 0;
+	}
+	gl_target_destroy(picture);
+	rc = gl_target_create(picture, width_px, height_px);
+	if (rc < 0)
+		return rc;
+	gl_bind_texture(0, picture->colour);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+	return 0;
+}
+
+void image_warp_let_go(struct image_warp_reference *reference)
+{
+	gl_target_destroy(&reference->picture);
+}
+
+void image_warp_finish(struct image_warp *warp)
+{
+	if (warp->program)
+		glDeleteProgram(warp->program);
+	warp->program = 0;
+}
+
+/* ---- depths */
+
+/* Returns the least depth around a pixel corner. A cell that shows anything near is near as a
+ * whole, so that only what is behind gets stretched. */
+static float depth_around(const struct visibility *visibility, int x, int y)
+{
+	float nearest = sky_m;
+	for (int j = y - IMAGE_WARP_STEP; j < y + IMAGE_WARP_STEP; j++)
+		for (int i = x - IMAGE_WARP_STEP; i < x + IMAGE_WARP_STEP; i++)
+			if (i >= 0 && j >= 0 && i < VISIBILITY_WIDTH && j < VISIBILITY_HEIGHT)
+				nearest = fminf(nearest, visibility_depth_m(visibility, i, j));
+	return nearest;
+}
+
+static int within(int value, int most)
+{
+	return value < 0 ? 0 : value > most ? most : value;
+}
+
+void image_warp_take_depths(struct image_warp_reference *reference,
+			    const struct visibility *visibility)
+{
+	reference->nearest_m = sky_m;
+	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
+		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
+			const float depth_m = depth_around(
+				visibility, IMAGE_WARP_STEP * within(i - 1, IMAGE_WARP_ACROSS),
+				IMAGE_WARP_STEP * within(j - 1, IMAGE_WARP_UP));
+			reference->depth_m[j * IMAGE_WARP_COLUMNS + i] = depth_m;
+			reference->nearest_m = fminf(reference->nearest_m, depth_m);
+		}
+	}
+}
+
+bool image_warp_reaches(const struct image_warp_reference *reference, const struct view *view)
+{
+	return vec_dot(reference->view.forward, view->forward) >= reach_cosine &&
+	       vec_distance(reference->view.eye_m, view->eye_m) <=
+		       reach_share * reference->nearest_m;
+}
+
+/* ---- the mesh */
+
+/* Returns where a column or row of points is, -1..1 within the picture. */
+static float across(int i, int cells)
+{
+	if (i == 0)
+		return -1 - ring;
+	if (i == cells + 2)
+		return 1 + ring;
+	return 2 * (float)(i - 1) / (float)cells - 1;
+}
+
+static float share(float at)
+{
+	return fminf(fmaxf((at + 1) / 2, 0), 1);
+}
+
+/* Writes where a direction or a place relative to the eye is in clip space, before the division.
+ * The matrix turns it as the panel is. */
+static void clip_place(float out[2], const struct view *view, const float to[3])
+{
+	for (int k = 0; k < 2; k++)
+		out[k] = view->clip[k] * to[0] + view->clip[4 + k] * to[1] +
+			 view->clip[8 + k] * to[2];
+}
+
+void image_warp_place(struct image_warp *warp, const struct image_warp_reference *reference,
+		      const struct view *view)
+{
+	const struct view *from = &reference->view;
+	const float least_m = least_share * reference->nearest_m;
+	float moved_m[3];
+	vec_sub(moved_m, from->eye_m, view->eye_m);
+	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
+		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
+			const int n = j * IMAGE_WARP_COLUMNS + i;
+			const float x = from->tan_x * across(i, IMAGE_WARP_ACROSS);
+			const float y = from->tan_y * across(j, IMAGE_WARP_UP);
+			float along[3], to[3], was[2], is[2];
+			for (int k = 0; k < 3; k++) {
+				along[k] = from->forward[k] + x * from->right[k] + y * from->up[k];
+				to[k] = moved_m[k] + reference->depth_m[n] * along[k];
+			}
+			const float z = fmaxf(vec_dot(to, view->forward), least_m);
+			clip_place(was, from, along);
+			clip_place(is, view, to);
+			warp->point[n] = (struct image_warp_point){ .x = is[0] / z,
+								    .y = is[1] / z,
+								    .u = share(was[0]),
+								    .v = share(was[1]) };
+		}
+	}
+}
+
+/* Writes the two triangles of a cell. */
+static uint16_t *add_cell(uint16_t *at, int i, int j)
+{
+	const uint16_t low = (uint16_t)(j * IMAGE_WARP_COLUMNS + i);
+	const uint16_t high = (uint16_t)(low + IMAGE_WARP_COLUMNS);
+	const uint16_t cell[6] = { low, (uint16_t)(low + 1),  (uint16_t)(high + 1),
+				   low, (uint16_t)(high + 1), high };
+	memcpy(at, cell, sizeof(cell));
+	return at + 6;
+}
+
+/* Writes the cells between two points, first to last or last to first on each axis. */
+static uint16_t *add_sheet(uint16_t *at, const int low[2], const int high[2], const bool falls[2])
+{
+	for (int b = 0; b < high[1] - low[1]; b++)
+		for (int a = 0; a < high[0] - low[0]; a++)
+			at = add_cell(at, falls[0] ? high[0] - 1 - a : low[0] + a,
+				      falls[1] ? high[1] - 1 - b : low[1] + b);
+	return at;
+}
+
+/* Returns the column or row next to the epipole: where the picture shows the eye, or would. */
+static int epipole(float aside_m, float ahead_m, float tangent, int cells)
+{
+	const float at = (aside_m / (ahead_m * tangent) + 1) / 2 * (float)cells + 1;
+	return (int)fminf(fmaxf(at, 0), (float)(cells + 2));
+}
+
+/* Rays of the eye are lines through the epipole there. If the eye is in front of the reference's,
+ * what is farther along a ray is farther from the epipole, so all is drawn towards it; if it is
+ * behind, away from it. In each of the four quadrants around it, that is one order of columns and
+ * rows. */
+void image_warp_order(struct image_warp *warp, const struct image_warp_reference *reference,
+		      const struct view *view)
+{
+	const struct view *from = &reference->view;
+	float moved_m[3];
+	vec_sub(moved_m, view->eye_m, from->eye_m);
+	float ahead_m = vec_dot(moved_m, from->forward);
+	/* An eye that moves aside is a little in front, and its epipole far outside. */
+	if (fabsf(ahead_m) < 1e-9f)
+		ahead_m = 1e-9f;
+	const int middle[2] = {
+		epipole(vec_dot(moved_m, from->right), ahead_m, from->tan_x, IMAGE_WARP_ACROSS),
+		epipole(vec_dot(moved_m, from->up), ahead_m, from->tan_y, IMAGE_WARP_UP),
+	};
+	const int end[2] = { IMAGE_WARP_COLUMNS - 1, IMAGE_WARP_ROWS - 1 };
+	uint16_t *at = warp->index;
+	for (int quadrant = 0; quadrant < 4; quadrant++) {
+		int low[2], high[2];
+		bool falls[2];
+		for (int k = 0; k < 2; k++) {
+			const bool upper = quadrant >> k & 1;
+			low[k] = upper ? middle[k] : 0;
+			high[k] = upper ? end[k] : middle[k];
+			falls[k] = upper == (ahead_m > 0);
+		}
+		at = add_sheet(at, low, high, falls);
+	}
+}
+
+void image_warp_draw(struct image_warp *warp, const struct image_warp_reference *reference,
+		     const struct view *view, const struct gl_place *place)
+{
+	image_warp_place(warp, reference, view);
+	image_warp_order(warp, reference, view);
+	gl_place_bind(place, view->width_px, view->height_px);
+	glDisable(GL_BLEND);
+	glDisable(GL_CULL_FACE);
+	glDisable(GL_DEPTH_TEST);
+	glUseProgram(warp->program);
+	gl_bind_texture(0, reference->picture.colour);
+	glBindBuffer(GL_ARRAY_BUFFER, 0);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+	glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, 0, warp->point);
+	glEnableVertexAttribArray(0);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	glDrawElements(GL_TRIANGLES, IMAGE_WARP_INDICES, GL_UNSIGNED_SHORT, warp->index);
+	glDisableVertexAttribArray(0);
+	glEnable(GL_DEPTH_TEST);
+}

@@ -1,0 +1,259 @@
+/* Chooses where the eye will be, draws the reference picture in slices, and shows it. */
+#include "render/scene/scene_reference.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "geometry/vec.h"
+#include "render/scene/scene_mark.h"
+#include "render/scene/scene_picture.h"
+#include "render/scene/scene_plan.h"
+#include "render/scene/scene_visibility.h"
+
+enum { DEPTH_FRAMES = 4 }; /* between two that renew depths of faces */
+
+/* What counting a pass takes that was read back, in triangles of it. */
+static const float counting_cost = 0.4f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
+/* Its field of view is so much wider, for what the eye turns to. */
+static const float wider = 1.06f;
+/* It is drawn for the time when it is shown first, but not for later than this, nor for
+ * farther away than this share of what is nearest: eyes stop and turn round. */
+static const float lead_most_ms = 300, lead_most_share = 0.4f;
+/* The newest frame's share of the eye's speed. */
+static const float newest = 0.5f;
+
+bool scene_is_warped(const struct scene *scene)
+{
+	return scene->used.share < 1 && scene->has_hierarchy && scene->backdrop.share <= 0 &&
+	       !scene_scenery(scene) && scene->stream.growth.triangle_count == 0;
+}
+
+void scene_drop_references(struct scene *scene)
+{
+	struct scene_references *r = &scene->references;
+	for (int i = 0; i < 2; i++)
+		image_warp_let_go(&r->of[i]);
+	r->has_shown = r->is_begun = r->is_kept = false;
+}
+
+void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms)
+{
+	struct scene_references *r = &scene->references;
+	const struct view *was = &scene->view;
+	if (!scene->has_view || passed_ms <= 0)
+		return;
+	for (int k = 0; k < 3; k++) {
+		const float moved = (view->eye_m[k] - was->eye_m[k]) / passed_ms;
+		const float turned = (view->forward[k] - was->forward[k]) / passed_ms;
+		r->eye_speed[k] += newest * (moved - r->eye_speed[k]);
+		r->turn_speed[k] += newest * (turned - r->turn_speed[k]);
+	}
+	if (scene->was_moving)
+		r->frame_ms += newest * (passed_ms - r->frame_ms);
+}
+
+/* ---- the view of the next one */
+
+/* Returns in how many milliseconds the next picture is shown first: it is drawn in 1 / share
+ * frames. A lead to the middle of the time in which it is shown gave no better pictures
+ * (docs/figures.md). */
+static float lead_ms(const struct scene *scene)
+{
+	const struct scene_references *r = &scene->references;
+	const float speed = sqrtf(vec_dot(r->eye_speed, r->eye_speed));
+	const float most_m = lead_most_share * r->of[r->shown].nearest_m;
+	float ms = fminf(r->frame_ms / scene->used.share, lead_most_ms);
+	if (speed * ms > most_m)
+		ms = most_m / speed;
+	return ms;
+}
+
+static struct view view_ahead(const struct scene *scene, float ms)
+{
+	const struct scene_references *r = &scene->references;
+	struct camera camera = scene->camera;
+	struct view view;
+	float forward[3];
+	for (int k = 0; k < 3; k++) {
+		camera.eye_m[k] += ms * r->eye_speed[k];
+		forward[k] = scene->view.forward[k] + ms * r->turn_speed[k];
+	}
+	vec_normalise(forward);
+	for (int k = 0; k < 3; k++)
+		camera.target_m[k] = camera.eye_m[k] + forward[k];
+	camera.fov_deg = 2 * atanf(wider * scene->view.tan_y) * 180 / (float)M_PI;
+	camera.width_px = (int)(wider * (float)camera.width_px);
+	camera.height_px = (int)(wider * (float)camera.height_px);
+	view_from_camera(&view, &camera);
+	section_cut(&scene->tools.section, view.eye_m, view.cut);
+	return view;
+}
+
+/* ---- drawing it */
+
+static struct image_warp_reference *coming(struct scene *scene)
+{
+	return &scene->references.of[1 - scene->references.shown];
+}
+
+static void sum_costs(struct scene *scene, float picture_px)
+{
+	float cost = counting_cost;
+	for (uint32_t i = 0; i < scene->counted_all; i++) {
+		const struct visible_piece *v = &scene->counted[i];
+		const struct piece *piece =
+			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
+		cost += (float)piece->triangle_count + scene_piece_cost(scene, v, picture_px);
+	}
+	scene->references.cost = cost;
+}
+
+/* Lists the pieces of another view, and begins its visibility pass and its picture with them. */
+static bool begin(struct scene *scene, float ahead_ms)
+{
+	struct scene_references *r = &scene->references;
+	struct image_warp_reference *next = coming(scene);
+	const struct view seen = scene->view;
+	struct view small;
+	scene->view = next->view = view_ahead(scene, ahead_ms);
+	enlargement_view(&small, &next->view, scene->used.scale);
+	if (image_warp_begin(&r->warp, next, small.width_px, small.height_px) < 0) {
+		scene->view = seen;
+		return false;
+	}
+	scene_begin_picture(scene);
+	scene_list_pieces(scene);
+	r->is_begun = scene_begin_visibility(scene);
+	scene->view = seen;
+	scene_list_pieces(scene);
+	if (!r->is_begun)
+		return false;
+	scene->counting = r->is_read = false;
+	r->numbered = 0;
+	sum_costs(scene, small.picture_px);
+	const struct surface_frame frame = scene_surface_frame(scene, &small, PICTURE_ASIDE);
+	scene_begin_slices(scene, &frame, scene->counted, scene->counted_all, &r->slice);
+	return true;
+}
+
+/* Draws pieces of the visibility pass until the cost is reached; reads it back after the last one.
+ * Returns what it cost. */
+static float draw_numbers(struct scene *scene, float cost)
+{
+	struct scene_references *r = &scene->references;
+	uint32_t to = r->numbered;
+	float drawn = 0;
+	for (; to < scene->counted_count && drawn < cost; to++) {
+		const struct visible_piece *v = &scene->counted[to];
+		const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
+		if (patch->pieces)
+			drawn += (float)patch->content.bvh.pieces[v->piece].triangle_count;
+	}
+	visibility_resume(&scene->visibility, &scene->root);
+	scene_draw_numbers(scene, r->numbered, to);
+	r->numbered = to;
+	if (to < scene->counted_count)
+		return drawn;
+	if (!r->is_kept)
+		scene_end_visibility(scene);
+	else if (visibility_end(&scene->visibility) < 0)
+		log_warn("render", "a picture will be warped with the depths of another one");
+	image_warp_take_depths(coming(scene), &scene->visibility);
+	r->is_read = true;
+	return drawn + counting_cost;
+}
+
+/* Draws pieces of the picture. After the last one it is the one that is shown. */
+static void draw_pieces(struct scene *scene, float cost)
+{
+	struct scene_references *r = &scene->references;
+	struct image_warp_reference *next = coming(scene);
+	const struct gl_place place = { .framebuffer = next->picture.framebuffer };
+	struct view small;
+	enlargement_view(&small, &next->view, scene->used.scale);
+	small.width_px = next->picture.width_px;
+	small.height_px = next->picture.height_px;
+	const struct surface_frame frame = scene_surface_frame(scene, &small, PICTURE_ASIDE);
+	gl_target_bind(&next->picture);
+	scene_resume_picture();
+	if (!scene_draw_slice(scene, &frame, &r->slice, cost))
+		return;
+	scene_draw_mask(scene, &small, &next->picture);
+	outline_draw(&scene->outline, &place, small.width_px, small.height_px);
+	r->shown = 1 - r->shown;
+	r->has_shown = true;
+	r->is_begun = false;
+}
+
+/* Returns whether a face that is used has no depths. */
+static bool depth_is_missing(const struct scene *scene)
+{
+	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
+		const struct tiles_face *face = &scene->tiles.faces[i];
+		if (face->used && face->stamp == scene->tiles.stamp &&
+		    !depth_ready(&scene->depth, i, face->key))
+			return true;
+	}
+	return false;
+}
+
+bool scene_build_reference(struct scene *scene)
+{
+	struct scene_references *r = &scene->references;
+	r->is_kept = false;
+	const bool whole = !r->has_shown || !image_warp_reaches(&r->of[r->shown], &scene->view);
+	r->since_depth++;
+	if (!whole && r->since_depth > (depth_is_missing(scene) ? 1 : DEPTH_FRAMES)) {
+		r->since_depth = 0;
+		return false;
+	}
+	float left = INFINITY;
+	if (whole)
+		r->is_begun = false;
+	if (!r->is_begun && !begin(scene, whole ? 0 : lead_ms(scene)))
+		return false;
+	if (!whole)
+		left = scene->used.share * r->cost;
+	if (!r->is_read)
+		left -= draw_numbers(scene, left);
+	if (r->is_read && left > 0)
+		draw_pieces(scene, left);
+	return true;
+}
+
+void scene_keep_reference(struct scene *scene)
+{
+	struct scene_references *r = &scene->references;
+	const bool programs_wait = scene->programs_wait;
+	if (r->is_kept)
+		return;
+	scene->used = scene->effort;
+	r->is_kept = true;
+	r->is_begun = false;
+	if (scene_is_warped(scene) && begin(scene, 0)) {
+		draw_numbers(scene, INFINITY);
+		draw_pieces(scene, INFINITY);
+	}
+	scene->used = scene_effort_full;
+	scene->programs_wait = programs_wait;
+}
+
+/* At the size of the reference and enlarged, because a processor enlarges faster than it warps
+ * (docs/picture.md). */
+bool scene_show_reference(struct scene *scene, const struct gl_place *place)
+{
+	struct scene_references *r = &scene->references;
+	const struct view *view = &scene->view;
+	struct view small;
+	if (!scene_is_warped(scene) || !r->has_shown)
+		return false;
+	enlargement_view(&small, view, scene->used.scale);
+	if (enlargement_begin(&scene->enlargement, &small) < 0)
+		return false;
+	const struct gl_place aside = { .framebuffer = scene->enlargement.small.framebuffer };
+	scene_begin_picture(scene);
+	image_warp_draw(&r->warp, &r->of[r->shown], &small, &aside);
+	enlargement_end(&scene->enlargement, place, view->width_px, view->height_px);
+	return true;
+}

@@ -1,0 +1,26 @@
+/* Reference pictures, where frames take too long: drawn over several frames for where the eye will
+ * be, then warped to where it is (render/lumigraph/image_warp.h). A reference picture and its
+ * visibility pass have the same view and the same pieces. Private to render/scene. */
+#ifndef GOPURA_RENDER_SCENE_SCENE_REFERENCE_H
+#define GOPURA_RENDER_SCENE_SCENE_REFERENCE_H
+
+#include "render/scene/scene_parts.h"
+
+/* Returns whether this frame shows a reference picture. Not what moves by itself, nor what the
+ * visibility pass does not know: scenery, backdrop, streaming mesh. */
+bool scene_is_warped(const struct scene *scene);
+/* Notes how the eye moves; passed_ms since the last frame. */
+void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
+/* Draws a share of the next reference picture; all of it where none can be shown. Every
+ * fifth frame is left to depths of faces, and every second one where some are missing. Returns
+ * whether anything was drawn. */
+bool scene_build_reference(struct scene *scene);
+/* Shows the last one as the eye sees it now. Returns whether there is one. */
+bool scene_show_reference(struct scene *scene, const struct gl_place *place);
+/* At rest: draws the one that the next motion begins with, unless it did since the picture last
+ * changed, so that the answer to a touch need not wait for a whole one. */
+void scene_keep_reference(struct scene *scene);
+/* Drops what they show, and frees them. */
+void scene_drop_references(struct scene *scene);
+
+#endif
