@@ -166,13 +166,6 @@ static int make_roots(struct exchange_root *earlier, struct exchange_root *tuf,
 	return rc;
 }
 
-static bool has_snapshot_key(const char *folder)
-{
-	char path[PATH_MAX];
-
-	return keys_join(path, folder, "snapshot.key") == 0 && access(path, F_OK) == 0;
-}
-
 static int run(struct keys_exchanged *out, struct exchange *exchange)
 {
 	struct exchange_root earlier, tuf;
@@ -192,10 +185,13 @@ static int run(struct keys_exchanged *out, struct exchange *exchange)
 		rc = write_root(exchange, "tuf", &tuf);
 	if (rc == 0)
 		rc = take_all(exchange, &out->kept);
-	if (rc == 0) {
+	if (rc == 0)
+		rc = keys_has(exchange->folder, "snapshot.key");
+	if (rc >= 0) {
 		out->root = earlier.version;
 		out->tuf_root = tuf.version;
-		out->is_shared = has_snapshot_key(exchange->folder);
+		out->is_shared = rc > 0;
+		rc = 0;
 	}
 	buffer_finish(&earlier.file);
 	buffer_finish(&tuf.file);

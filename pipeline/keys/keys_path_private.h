@@ -6,6 +6,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/log.h"
 
@@ -22,6 +23,21 @@ static inline int keys_join(char path[PATH_MAX], const char *folder, const char 
 	return snprintf(path, PATH_MAX, "%s/%s", folder, name) < PATH_MAX
 		       ? 0
 		       : keys_complain(folder, name, -ENAMETOOLONG, NULL);
+}
+
+/* Returns 1 if FOLDER/NAME is there, 0 if not, or a negative errno, logged: what cannot be seen is
+ * not missing. */
+static inline int keys_has(const char *folder, const char *name)
+{
+	char path[PATH_MAX];
+	struct stat status;
+	const int rc = keys_join(path, folder, name);
+
+	if (rc < 0)
+		return rc;
+	if (lstat(path, &status) == 0)
+		return 1;
+	return errno == ENOENT || errno == ENOTDIR ? 0 : keys_complain(folder, name, -errno, NULL);
 }
 
 #endif

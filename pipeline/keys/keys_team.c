@@ -18,13 +18,6 @@
 
 enum { FILE_BYTES_MAX = 64 << 10 };
 
-static bool is_there(const char *folder, const char *name)
-{
-	char path[PATH_MAX];
-
-	return keys_join(path, folder, name) == 0 && access(path, F_OK) == 0;
-}
-
 static int make_folders(const char *folder)
 {
 	char path[PATH_MAX];
@@ -66,6 +59,8 @@ static int copy_root(const char *folder, const char *from, uint32_t version)
 			      "missing; the museum hands over the folder tuf of its keys");
 	else if (rc < 0 && rc != -ENOENT)
 		keys_complain(from, name, rc, NULL);
+	else if (rc == 0 && had < 0 && had != -ENOENT)
+		rc = keys_complain(folder, name, had, NULL);
 	else if (rc == 0 && had == 0 && !bytes_equal(buffer_bytes(&theirs), buffer_bytes(&ours)))
 		rc = keys_complain(
 			folder, name, -EEXIST,
@@ -93,12 +88,14 @@ static int copy_key(const char *folder, const char *from, const char *name)
 	char path[PATH_MAX];
 	struct signing_key key;
 	struct buffer file;
-	int rc = keys_join(path, from, name);
+	int rc = keys_has(from, name);
 
-	if (rc < 0 || access(path, F_OK) < 0)
+	if (rc <= 0)
 		return rc;
 	buffer_init(&file, 255);
-	rc = buffer_read_file(&file, path);
+	rc = keys_join(path, from, name);
+	if (rc == 0)
+		rc = buffer_read_file(&file, path);
 	if (rc == 0)
 		rc = keys_decode(&key, buffer_bytes(&file), NULL);
 	buffer_put_u8(&file, 0); /* ends the text */
@@ -138,29 +135,34 @@ static int make_own_key(const char *folder, const char *role)
 
 static int make_signing(const char *folder, const char *role)
 {
-	const char *snapshot = is_there(folder, "snapshot.key") ? "snapshot.key" : "none";
-	const char *timestamp = is_there(folder, "timestamp.key") ? "timestamp.key" : "none";
+	const int snapshot = keys_has(folder, "snapshot.key");
+	const int timestamp = keys_has(folder, "timestamp.key");
+	const int signing = keys_has(folder, "signing.ini");
 	char text[512];
 	int size;
 
-	if (is_there(folder, "signing.ini"))
+	if (snapshot < 0 || timestamp < 0 || signing < 0)
+		return -EIO; /* which one was said */
+	if (signing)
 		return 0;
 	size = snprintf(text, sizeof(text),
-			"[keys]\ntargets = %s.key\nsnapshot = %s\ntimestamp = %s\n", role, snapshot,
-			timestamp);
+			"[keys]\ntargets = %s.key\nsnapshot = %s\ntimestamp = %s\n", role,
+			snapshot ? "snapshot.key" : "none", timestamp ? "timestamp.key" : "none");
 	return put(folder, "signing.ini", (struct bytes){ (const uint8_t *)text, (size_t)size });
 }
 
 int keys_make_team(const char *folder, const char *role, const char *handed_over)
 {
-	int rc;
+	int rc = keys_has(folder, "root/1.json");
 
-	if (is_there(folder, "root/1.json"))
+	if (rc > 0)
 		return keys_complain(
 			folder, "root/1.json", -EEXIST,
 			"these keys publish a temple by themselves; keep those of the role "
 			"in another folder (--keys)");
-	if (is_there(handed_over, "release.key") || is_there(handed_over, "root.key"))
+	if (rc < 0)
+		return rc;
+	if (keys_has(handed_over, "release.key") > 0 || keys_has(handed_over, "root.key") > 0)
 		log_warn("pipeline",
 			 "%s has the museum's own keys, with which one can publish every temple: "
 			 "hand over tuf, snapshot.key and timestamp.key alone",

@@ -61,6 +61,7 @@ use() {
 	makes "$name" || case $name in
 	keys) command=("$content" keys "$work/content" --keys "$work/new") ;;
 	rekeys) command=("$content" keys "$work/content" --keys "$work/exchanged" --museum) ;;
+	team) command=("$content" keys "$work/content" --keys "$work/exchanged" --team stone --from "$work/handed") ;;
 	exchange) command=("$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp) ;;
 	inspect) command=("$content" inspect "$work/release") ;;
 	verify) command=("$content" verify "$work/release") ;;
@@ -81,6 +82,12 @@ prepare() {
 	! makes "$1" || mkdir "$work/new"
 	case $1 in
 	exchange | rekeys) cp -a "$work/both_forms" "$work/exchanged" ;;
+	team)
+		[ -d "$work/handed" ] || {
+			cp -a "$work/both_forms" "$work/handed"
+			"$content" keys "$work/content" --keys "$work/handed" --museum >"$work/said" 2>&1
+			rm -rf "$work/handed"/{root,release,targets}.key "$work/handed/root"
+		} ;;
 	both) cp -a "$work/reference" "$work/new" ;;
 	user)
 		mkdir "$work/new"
@@ -129,6 +136,10 @@ strain() {
 			cmp "$path" "$work/exchanged/${path#"$work/both_forms/"}" >"$work/said" 2>&1 || fault "rekeys: $2 call $4: ${path##*/} is lost"
 		done
 		use rekeys && [ -f "$work/exchanged/snapshot.key" ] || fault "rekeys: $2 call $4: the next one does not work" ;;
+	team)
+		use team && cmp "$work/handed/snapshot.key" "$work/exchanged/snapshot.key" >>"$work/said" 2>&1 &&
+			grep -q 'snapshot = snapshot.key' "$work/exchanged/signing.ini" ||
+			fault "team: $2 call $4: the next one does not work, or a key was left out" ;;
 	exchange)
 		"$content" keys --keys "$work/exchanged" --exchange root --exchange timestamp >"$work/said" 2>&1 &&
 			"$content" keys --keys "$work/exchanged" >>"$work/said" 2>&1 || fault "exchange: $2 call $4: the next one does not go on" ;;
@@ -177,7 +188,7 @@ all() {
 }
 
 RANDOM=${SEED:-1}
-for name in ${USES:-keys rekeys exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk morning follow touch}; do
+for name in ${USES:-keys rekeys team exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk morning follow touch}; do
 	all "$name" memory 12
 	io=(5 28 4) database=(5 28) # EIO, ENOSPC, EINTR
 	[ "$samples" = 0 ] || io=("${io[RANDOM % 3]}") database=("${database[RANDOM % 2]}")
