@@ -399,6 +399,33 @@ static void a_history_without_its_objects_is_put_aside(void **state)
 	documents_close(documents);
 }
 
+/* What cannot be read now may be whole, so it is refused and stays where it is. */
+static void a_history_that_cannot_be_read_is_not_put_aside(void **state)
+{
+	struct documents *documents = opened();
+	struct history_version versions[20];
+	char command[2 * PATH_MAX + 60];
+
+	(void)state;
+	CHECK(save(documents, "parts.json", "words", "", "ana") == 0);
+	documents_close(documents);
+	/* a branch that is a loop of links: the system refuses to open it */
+	snprintf(command, sizeof(command),
+		 "cd '%s'/.curator/history.git/refs/heads && mv main ../../kept && ln -s main main",
+		 folder);
+	CHECK(system(command) == 0);
+	log_set_level((enum log_level) - 1);
+	CHECK(documents_open(&documents, folder, NULL) == -EIO);
+	snprintf(command, sizeof(command),
+		 "cd '%s'/.curator/history.git/refs/heads && rm main && mv ../../kept main",
+		 folder);
+	CHECK(system(command) == 0);
+	documents = opened();
+	CHECK(versions_of(documents, "parts.json", versions) == 1);
+	CHECK(strcmp(versions[0].author, "ana") == 0);
+	documents_close(documents);
+}
+
 static void another_process_cannot_open_the_folder(void **state)
 {
 	struct documents *documents = opened();
@@ -430,6 +457,7 @@ int main(void)
 		TEST(locks_of_a_killed_program_are_removed),
 		TEST(a_damaged_history_is_put_aside),
 		TEST(a_history_without_its_objects_is_put_aside),
+		TEST(a_history_that_cannot_be_read_is_not_put_aside),
 		TEST(another_process_cannot_open_the_folder),
 	};
 
