@@ -126,7 +126,8 @@ bool scene_draw_slice(struct scene *scene, const struct surface_frame *frame,
 		      struct scene_slice *slice, float cost)
 {
 	int64_t new_us = 0;
-	for (float drawn = 0; slice->program >= 0; slice->program--, slice->at = 0) {
+	float drawn = 0;
+	for (; slice->program >= 0 && drawn < cost; slice->program--, slice->at = 0) {
 		const int program = slice->program;
 		const bool can_wait = surface_faces(program) > 0 && !frame->shares;
 		const bool is_new = surface_is_new(&scene->surface, frame, program);
@@ -180,7 +181,8 @@ struct surface_frame scene_surface_frame(const struct scene *scene, const struct
 	};
 }
 
-void scene_draw_beside(struct scene *scene, const struct surface_frame *frame)
+/* Draws what a picture has besides pieces. */
+static void draw_beside(struct scene *scene, const struct surface_frame *frame)
 {
 	scene_draw_stream(scene, frame);
 	if (!frame->shares)
@@ -195,5 +197,5 @@ void scene_draw_picture(struct scene *scene, const struct view *view, enum pictu
 	scene_begin_slices(scene, &frame, scene->visible,
 			   scene->visible_count + scene->leaving_count, &slice);
 	scene_draw_slice(scene, &frame, &slice, INFINITY);
-	scene_draw_beside(scene, &frame);
+	draw_beside(scene, &frame);
 }

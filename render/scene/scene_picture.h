@@ -24,8 +24,6 @@ float scene_piece_cost(const struct scene *scene, const struct visible_piece *v,
 /* Draws the next of them, that cost at least so much together. Returns whether all are drawn. */
 bool scene_draw_slice(struct scene *scene, const struct surface_frame *frame,
 		      struct scene_slice *slice, float cost);
-/* Draws what a picture has besides pieces. */
-void scene_draw_beside(struct scene *scene, const struct surface_frame *frame);
 /* Draws the listed pieces, and what else is shown, as seen in a view. */
 void scene_draw_picture(struct scene *scene, const struct view *view, enum picture kind);
 

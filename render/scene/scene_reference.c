@@ -234,6 +234,7 @@ void scene_keep_reference(struct scene *scene)
 	if (scene_is_warped(scene) && begin(scene, 0)) {
 		draw_numbers(scene, INFINITY);
 		draw_pieces(scene, INFINITY);
+		image_warp_let_go(coming(scene));
 	}
 	scene->used = scene_effort_full;
 	scene->programs_wait = programs_wait;
