@@ -146,6 +146,15 @@ void frame_note_shown(struct frame *frame)
 		      shown_by(frame)->frame.triangles);
 }
 
+/* What a whole picture at rest took tells how a motion should begin. */
+static void expect(struct frame *frame)
+{
+	const struct scene_frame *shown = &shown_by(frame)->frame;
+
+	if (!shown->moved && shown->moving && shown->patches > 0)
+		governor_expect(&frame->governor, frame->spent_us, shown->triangles);
+}
+
 int frame_period_ms(const struct frame *frame)
 {
 	const bool moved = shown_by(frame)->frame.moved;
@@ -270,6 +279,7 @@ int frame_draw(struct frame *frame)
 	frame->spent_us = measured_us(frame) - frame->began_us;
 	log_slow(frame);
 	frame->pending = shown_by(frame)->frame.moved;
+	expect(frame);
 	frame_note_shown(frame);
 	log_first_picture(frame);
 	sessions_keep_first(o->sessions, o->trial->pictured_ms);

@@ -30,6 +30,8 @@ static const float level_least = -0.4f, share_most = 0.67f, share_least = 0.16f;
 static const float level_faces = 0.4f, level_triangles = 0.2f, level_budget = 0.1f;
 /* At level 0 and below: the share of the time budgets. */
 static const float budget_least = 0.25f;
+/* What a frame at level 0 takes of one at full effort (docs/figures.md). */
+static const float cost_least = 0.3f;
 /* Fewer triangles cost the picture more than they save (docs/figures.md). */
 enum { FACES_LEAST = 1, TRIANGLES_LEAST = 60000 };
 
@@ -107,6 +109,7 @@ void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangl
 	const int64_t passed_us = spent_us > target_us ? spent_us : target_us;
 	if (governor_is_fixed(governor))
 		return;
+	governor->has_moved = true;
 	if (!limits_triangles(governor))
 		governor->whole = triangles;
 	governor->quiet_us += passed_us;
@@ -146,6 +149,28 @@ static float share_at(float level)
 	if (level >= 0)
 		return 1;
 	return share_most * powf(share_least / share_most, level / level_least);
+}
+
+/* Returns the level at which a frame takes that part of one at full effort. */
+static float level_for(float part)
+{
+	if (part >= cost_least)
+		return fminf((part - cost_least) / (1 - cost_least), 1);
+	const float level =
+		level_least * logf(part / cost_least / share_most) / logf(share_least / share_most);
+	return fminf(fmaxf(level, level_least), 0);
+}
+
+void governor_expect(struct governor *governor, int64_t spent_us, uint32_t triangles)
+{
+	if (governor->has_moved || governor_is_fixed(governor) || spent_us <= 0)
+		return;
+	governor->whole = triangles;
+	governor->divisor = 1;
+	while (spent_us > governor_target_us(governor) && may_slow_down(governor))
+		governor->divisor++;
+	governor->level =
+		level_for(load_goal * (float)governor_target_us(governor) / (float)spent_us);
 }
 
 struct scene_effort governor_effort(const struct governor *governor)

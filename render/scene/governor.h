@@ -30,12 +30,17 @@ struct governor {
 	int64_t patience_us; /* how long it must be quiet before the level rises */
 	int64_t risen_us;    /* time of moving frames since the level last rose */
 	int64_t held_us;     /* since it last fell */
+	bool has_moved;      /* a frame of a moving eye was noted */
 };
 
 /* Starts at full effort and at the panel's rate. */
 void governor_init(struct governor *governor, const struct governor_bounds *bounds);
 /* Takes the time that a frame of a moving eye took, in microseconds, and the triangles in it. */
 void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangles);
+/* Takes the time that a frame at rest took, which is drawn at full effort, and the triangles in it.
+ * Until the eye moves for the first time, the level is the one that the last of them lets expect.
+ */
+void governor_expect(struct governor *governor, int64_t spent_us, uint32_t triangles);
 /* Returns whether its bounds leave nothing to govern. */
 bool governor_is_fixed(const struct governor *governor);
 /* Returns the time that a frame may take now. */

@@ -199,6 +199,8 @@ static struct shot *shoot(struct bench *bench, uint32_t leg, int64_t began_us,
 	shot->depths = frame.depth_faces_drawn;
 	if (frame.moved && !bench->is_held)
 		governor_note(&bench->governor, stage->spent_us, frame.triangles);
+	else if (frame.moving && !bench->is_held)
+		governor_expect(&bench->governor, stage->spent_us, frame.triangles);
 	if (bench->is_held && frame.triangles > bench->governor.whole)
 		bench->governor.whole = frame.triangles;
 	return shot;

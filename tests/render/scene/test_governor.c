@@ -1,6 +1,7 @@
 /* The governor over simulated boards: what a frame costs follows from the effort. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "render/scene/governor.h"
 #include "tests/check.h"
@@ -88,6 +89,28 @@ static void a_weak_board_reaches_thirty_a_second_within_a_second(void **state)
 	play(&visit, 1000);
 	CHECK(governor_target_us(&visit.governor) == 2 * REFRESH_US);
 	CHECK(play(&visit, 10000) < 1.1f * 2 * REFRESH_US / 1000);
+}
+
+/* Frames at rest, at full effort, have told what to expect. */
+static void the_first_motion_begins_where_the_rest_lets_expect(void **state)
+{
+	static const struct board *const boards[] = { &strong, &middling, &weak, &weakest };
+	(void)state;
+	for (int i = 0; i < 4; i++) {
+		struct visit visit;
+		begin(&visit, *boards[i]);
+		const struct board *b = &visit.board;
+		const float whole_ms = b->fixed_ms + b->pixels_ms + b->triangles_ms;
+		governor_expect(&visit.governor, 2000000, WHOLE); /* the first compiled programs */
+		governor_expect(&visit.governor, (int64_t)(1000 * whole_ms), WHOLE);
+		CHECK((visit.governor.level >= 1) == (boards[i] == &strong));
+		for (int k = 0; k < 30; k++)
+			CHECK(frame(&visit) < 1.3f * 2 * REFRESH_US / 1000);
+		const struct governor before = visit.governor;
+		governor_expect(&visit.governor, 2000000,
+				WHOLE); /* and does not disturb it later */
+		CHECK(memcmp(&before, &visit.governor, sizeof(before)) == 0);
+	}
 }
 
 /* Its pictures take twice as long as a frame may, at the least effort. */
@@ -202,6 +225,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_strong_board_draws_everything_at_the_panels_rate),
 		cmocka_unit_test(a_weak_board_reaches_thirty_a_second_within_a_second),
+		cmocka_unit_test(the_first_motion_begins_where_the_rest_lets_expect),
 		cmocka_unit_test(the_weakest_board_reaches_thirty_a_second_over_several_frames),
 		cmocka_unit_test(the_scale_gives_way_before_faces_and_these_before_triangles),
 		cmocka_unit_test(it_gives_way_within_300_ms_and_comes_back),
