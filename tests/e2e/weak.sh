@@ -72,8 +72,8 @@ for name in sys.argv[2:]:
 P
 
 # ---- a little scene, with room for all its faces: what a limit itself costs, and that all that the scene's test claims
-# holds with it. Which samples arrive first moves one run by 0.6 dB, so a limit gets up to three runs; those after the first draw
-# the lumigraph alone.
+# holds with it. Which samples arrive first moves one run by 0.6 dB, seldom by 2, so the board with everything has the middle of
+# three runs, and a limit gets up to three; those after the first draw the lumigraph alone.
 # little LIMITS [TEST]: the dB of a run
 little() {
 	WEAK_GL=$1 WEAK_GL_REPORT=$work/little.json LD_PRELOAD=$shim build/tests/render/scene/test_scene "${@:2}" \
@@ -82,7 +82,7 @@ little() {
 	sed -n 's/^lumigraph: \([0-9.]*\) dB.*/\1/p' "$work/little.log"
 }
 lumigraph=images_show_what_vertices_cannot
-strong=$(little '' "$lumigraph") # the rest is a unit test
+strong=$(for _ in 1 2 3; do little '' "$lumigraph"; done | sort -n | sed -n 2p) # the rest is a unit test
 for limit in ${LIMITS:+size mediump} all; do
 	held=$(little "$limit")
 	for _ in 2 3; do
