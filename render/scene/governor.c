@@ -109,7 +109,8 @@ void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangl
 	const int64_t passed_us = spent_us > target_us ? spent_us : target_us;
 	if (governor_is_fixed(governor))
 		return;
-	governor->has_moved = true;
+	/* the first frame of all has a new view and nothing to show */
+	governor->has_moved = governor->has_moved || triangles > 0;
 	if (!limits_triangles(governor))
 		governor->whole = triangles;
 	governor->quiet_us += passed_us;
