@@ -1,7 +1,6 @@
 /* Where the points of a reference picture go, and that its triangles hide each other as in space.
  */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "geometry/vec.h"
