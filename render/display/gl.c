@@ -390,6 +390,13 @@ int gl_target_create_flat(struct gl_target *out, int width_px, int height_px)
 	return create_target(out, width_px, height_px, false);
 }
 
+void gl_target_smooth(const struct gl_target *target)
+{
+	gl_bind_texture(0, target->colour);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+}
+
 void gl_target_destroy(struct gl_target *target)
 {
 	if (!target)

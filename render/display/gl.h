@@ -106,6 +106,9 @@ void gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 must_check int gl_target_create(struct gl_target *out, int width_px, int height_px);
 /* The same without a depth buffer. */
 must_check int gl_target_create_flat(struct gl_target *out, int width_px, int height_px);
+/* Has the target looked up with bilinear filtering from now on; a new one is with the nearest
+ * pixel. */
+void gl_target_smooth(const struct gl_target *target);
 /* Deletes its GL objects. NULL and a zeroed target are fine. */
 void gl_target_destroy(struct gl_target *target);
 /* Binds the target and sets the viewport to all of it. */

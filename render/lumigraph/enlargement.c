@@ -23,12 +23,9 @@ static int allocate(struct enlargement *enlargement, int width_px, int height_px
 	int rc = enlargement->program ? 0 : gl_copy_build(&enlargement->program);
 	if (rc == 0)
 		rc = gl_target_create(&enlargement->small, width_px, height_px);
-	if (rc < 0)
-		return rc;
-	gl_bind_texture(0, enlargement->small.colour);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-	return 0;
+	if (rc == 0)
+		gl_target_smooth(&enlargement->small);
+	return rc;
 }
 
 int enlargement_begin(struct enlargement *enlargement, const struct view *small)

@@ -59,12 +59,9 @@ int image_warp_begin(struct image_warp *warp, struct image_warp_reference *refer
 	}
 	gl_target_destroy(picture);
 	rc = gl_target_create(picture, width_px, height_px);
-	if (rc < 0)
-		return rc;
-	gl_bind_texture(0, picture->colour);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-	return 0;
+	if (rc == 0)
+		gl_target_smooth(picture);
+	return rc;
 }
 
 void image_warp_let_go(struct image_warp_reference *reference)

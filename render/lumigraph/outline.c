@@ -176,12 +176,9 @@ static void limit(const struct outline *outline, const struct gl_place *place, i
 static int create_linear(struct gl_target *out, int width_px, int height_px)
 {
 	int rc = gl_target_create_flat(out, width_px, height_px);
-	if (rc < 0)
-		return rc;
-	gl_bind_texture(0, out->colour);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-	return 0;
+	if (rc == 0)
+		gl_target_smooth(out);
+	return rc;
 }
 
 static int create_share(const struct outline *outline, struct gl_target *out, int share_px)
