@@ -2,6 +2,7 @@
 STICKS is a folder of update bundles by name (docs/image.md); each is plugged in as a stick. Without it, what was written to the disk is noted in
 WORK/writes, a session for powercut.py. Of the CASES below only those named are run, or all. With ARCH=arm64 in the environment the image is of
 that architecture."""
+import http.client
 import json
 import os
 import re
@@ -38,6 +39,17 @@ def table(image):
     """The partitions, in order: start and size in sectors, name."""
     found = subprocess.run(["sfdisk", "--json", image], check=True, capture_output=True, env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
     return json.loads(found.stdout)["partitiontable"]["partitions"]
+
+
+def asked(port, path):
+    """What the health page behind the port answers to a question from outside, whatever its status; nothing when no answer comes, as on a machine that
+    is too busy to give one in time."""
+    try:
+        return urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=60).read().decode()
+    except urllib.error.HTTPError as error:
+        return error.read().decode()
+    except (OSError, http.client.HTTPException):
+        return ""
 
 
 class Appliance(Machine):
@@ -84,14 +96,6 @@ class Appliance(Machine):
         self.qmp.command("device_del", id=name)
         time.sleep(2)
         self.qmp.command("blockdev-del", **{"node-name": name})
-
-    def asked(self, path):
-        """What the health page answers to a question from outside, whatever its status."""
-        try:
-            answer = urllib.request.urlopen(f"http://127.0.0.1:{self.health}{path}", timeout=60)
-        except urllib.error.HTTPError as error:
-            answer = error
-        return answer.read().decode()
 
     def temple(self, name):
         self.wait_for("temple", ANSWER_S, lambda: tones(self.picture(name)) > 300)
@@ -195,8 +199,8 @@ def well(machine):
     up = {f"gopura_{what} 1" for what in ("kiosk_up", "fetch_up", "kiosk_picture")}
     until = time.monotonic() + ANSWER_S
     while True:
-        verdict, figures = machine.asked("/health"), machine.asked("/metrics")
-        if "critical" not in verdict.split() and up <= set(figures.splitlines()):
+        verdict, figures = asked(machine.health, "/health"), asked(machine.health, "/metrics")
+        if verdict and "critical" not in verdict.split() and up <= set(figures.splitlines()):
             break
         if time.monotonic() > until:
             raise SystemExit("the health page is wrong:\n" + verdict + figures)

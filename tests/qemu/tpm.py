@@ -8,11 +8,9 @@ import shutil
 import subprocess
 import sys
 import time
-import urllib.error
-import urllib.request
 
 sys.path.insert(0, os.path.dirname(__file__))
-from appliance import ANSWER_S, BOOT_S, DISK_BYTES, free_port, table
+from appliance import ANSWER_S, BOOT_S, DISK_BYTES, asked, free_port, table
 from machine import Machine
 
 FIRMWARE = "/usr/share/OVMF"
@@ -60,10 +58,7 @@ class Terminal(Machine):
 
 def warned(machine):
     """Whether the health page warns of data that is not encrypted."""
-    try:
-        return "The data partition is not encrypted" in urllib.request.urlopen(f"http://127.0.0.1:{machine.health}/health", timeout=60).read().decode()
-    except (urllib.error.URLError, ConnectionError, TimeoutError):  # not yet
-        return False
+    return "The data partition is not encrypted" in asked(machine.health, "/health")
 
 
 def start(work, case, tpm, expected, unexpected, until=IDENTITY):
