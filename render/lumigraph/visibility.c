@@ -11,10 +11,16 @@
 
 /* The near limit: at most this, and this share of the far one, since models may be a hand wide. */
 static const float near_most_m = 0.05f, near_share = 2e-3f;
+/* So many times farther away than all pieces, what is beside them is as far as the sky. */
+static const float beside_most = 10;
 
 static const char visibility_vertex[] =
 	"attribute vec3 a_position, a_base;\n"
+	"#ifdef BESIDE\n"
+	"uniform mat4 u_model;\n"
+	"#else\n"
 	"uniform vec4 u_lattice;\n"
+	"#endif\n"
 	/* right and up are divided by the tangents of the field of view */
 	"uniform vec3 u_right, u_up, u_forward;\n"
 	"uniform vec2 u_range;\n" /* near and far limit */
@@ -27,7 +33,11 @@ static const char visibility_vertex[] =
 	"varying float v_cut;\n"
 	"#endif\n"
 	"void main() {\n"
+	"#ifdef BESIDE\n"
+	"	vec3 p = (u_model * vec4(a_position, 1.0)).xyz;\n"
+	"#else\n"
 	"	vec3 p = u_lattice.xyz + u_lattice.w * (a_base + a_position);\n"
+	"#endif\n"
 	"	float z = dot(p, u_forward), n = u_range.x, f = u_range.y;\n"
 	"	v_depth = vec3(z / f * 65535.0 / 256.0, u_number);\n"
 	"#ifdef CUT\n"
@@ -53,8 +63,12 @@ static const char visibility_fragment[] =
 	"	gl_FragColor = vec4(back / 255.0 + v_depth.y, v_depth.z, vec2(high, low) / 255.0);\n"
 	"}\n";
 
-static int build(struct visibility_program *out, const char *defines)
+static int build(struct visibility_program *out, unsigned kind)
 {
+	static const char *const all[VISIBILITY_PROGRAMS] = { "", "#define CUT\n",
+							      "#define BESIDE\n",
+							      "#define CUT\n#define BESIDE\n" };
+	const char *const defines = all[kind];
 	const struct gl_program_source source = {
 		.name = "visibility",
 		.vertex = (const char *const[]){ defines, visibility_vertex, NULL },
@@ -73,6 +87,7 @@ static int build(struct visibility_program *out, const char *defines)
 	out->lattice = glGetUniformLocation(out->program, "u_lattice");
 	out->number = glGetUniformLocation(out->program, "u_number");
 	out->cut = glGetUniformLocation(out->program, "u_cut");
+	out->model = glGetUniformLocation(out->program, "u_model");
 	return 0;
 }
 
@@ -80,7 +95,7 @@ int visibility_init(struct visibility *visibility)
 {
 	memset(visibility, 0, sizeof(*visibility));
 	visibility->pixels = calloc(VISIBILITY_WIDTH * VISIBILITY_HEIGHT, 4);
-	int rc = visibility->pixels ? build(&visibility->whole, "") : -ENOMEM;
+	int rc = visibility->pixels ? build(&visibility->programs[0], 0) : -ENOMEM;
 	if (rc == 0)
 		rc = gl_target_create(&visibility->target, VISIBILITY_WIDTH, VISIBILITY_HEIGHT);
 	if (rc < 0) {
@@ -90,25 +105,46 @@ int visibility_init(struct visibility *visibility)
 	return 0;
 }
 
+/* Returns the program, built if it is not there, or NULL. */
+static const struct visibility_program *find_program(struct visibility *visibility, unsigned kind)
+{
+	struct visibility_program *p = &visibility->programs[kind];
+	return p->program || build(p, kind) == 0 ? p : NULL;
+}
+
 static const struct visibility_program *program_for(struct visibility *visibility)
 {
-	if (!view_is_cut(&visibility->view))
-		return &visibility->whole;
-	if (!visibility->section.program && build(&visibility->section, "#define CUT\n") < 0)
-		/* the part that is cut away then still hides what is behind it */
-		return &visibility->whole;
-	return &visibility->section;
+	const unsigned kind = view_is_cut(&visibility->view) ? VISIBILITY_CUT : 0;
+	const struct visibility_program *p = find_program(visibility, kind);
+	/* without it, the part that is cut away still hides what is behind it */
+	return p ? p : &visibility->programs[0];
 }
 
 void visibility_finish(struct visibility *visibility)
 {
-	if (visibility->whole.program)
-		glDeleteProgram(visibility->whole.program);
-	if (visibility->section.program)
-		glDeleteProgram(visibility->section.program);
+	for (unsigned kind = 0; kind < VISIBILITY_PROGRAMS; kind++)
+		if (visibility->programs[kind].program)
+			glDeleteProgram(visibility->programs[kind].program);
 	gl_target_destroy(&visibility->target);
 	free(visibility->pixels);
 	memset(visibility, 0, sizeof(*visibility));
+}
+
+/* Uses a program with the pass's view. */
+static void use(struct visibility *visibility, const struct visibility_program *program)
+{
+	const struct view *view = &visibility->view;
+	const float *r = view->right, *u = view->up, *f = view->forward;
+	const float x = 1 / view->tan_x, y = 1 / view->tan_y;
+	visibility->used = program;
+	glUseProgram(program->program);
+	glUniform3f(program->right, x * r[0], x * r[1], x * r[2]);
+	glUniform3f(program->up, y * u[0], y * u[1], y * u[2]);
+	glUniform3f(program->forward, f[0], f[1], f[2]);
+	glUniform2f(program->range, fminf(near_share * visibility->far_m, near_most_m),
+		    visibility->far_m);
+	if (program->cut >= 0)
+		glUniform4fv(program->cut, 1, view->cut);
 }
 
 void visibility_resume(struct visibility *visibility, const struct root_page *root)
@@ -121,20 +157,10 @@ void visibility_resume(struct visibility *visibility, const struct root_page *ro
 	glEnable(GL_DEPTH_TEST);
 	glDepthMask(GL_TRUE);
 	glDepthFunc(GL_LESS);
-	const struct visibility_program *program = visibility->used = program_for(visibility);
-	glUseProgram(program->program);
-	glUniform4f(program->lattice, (float)(lattice->origin_m[0] - view->eye_m[0]),
+	use(visibility, program_for(visibility));
+	glUniform4f(visibility->used->lattice, (float)(lattice->origin_m[0] - view->eye_m[0]),
 		    (float)(lattice->origin_m[1] - view->eye_m[1]),
 		    (float)(lattice->origin_m[2] - view->eye_m[2]), (float)lattice->step_m);
-	const float *r = view->right, *u = view->up, *f = view->forward;
-	float x = 1 / view->tan_x, y = 1 / view->tan_y;
-	glUniform3f(program->right, x * r[0], x * r[1], x * r[2]);
-	glUniform3f(program->up, y * u[0], y * u[1], y * u[2]);
-	glUniform3f(program->forward, f[0], f[1], f[2]);
-	glUniform2f(program->range, fminf(near_share * visibility->far_m, near_most_m),
-		    visibility->far_m);
-	if (program->cut >= 0)
-		glUniform4fv(program->cut, 1, view->cut);
 	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
@@ -152,10 +178,11 @@ static float find_far(const struct view *view, const struct root_page *root)
 }
 
 void visibility_begin(struct visibility *visibility, const struct view *view,
-		      const struct root_page *root)
+		      const struct root_page *root, float beside_m)
 {
+	const float far_m = find_far(view, root);
 	visibility->view = *view;
-	visibility->far_m = find_far(view, root);
+	visibility->far_m = fminf(fmaxf(far_m, beside_m), beside_most * far_m);
 	visibility_resume(visibility, root);
 	glClearColor(0, 0, 0, 0);
 	glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -165,6 +192,18 @@ void visibility_number(const struct visibility *visibility, uint32_t piece)
 {
 	glUniform2f(visibility->used->number, (float)((piece + 1) >> 8) / 255,
 		    (float)((piece + 1) & 255) / 255);
+}
+
+bool visibility_beside(struct visibility *visibility, const float model[16])
+{
+	const unsigned cut = view_is_cut(&visibility->view) ? VISIBILITY_CUT : 0;
+	const struct visibility_program *p = find_program(visibility, VISIBILITY_BESIDE | cut);
+	if (!p)
+		return false;
+	if (p != visibility->used)
+		use(visibility, p);
+	glUniformMatrix4fv(p->model, 1, GL_FALSE, model);
+	return true;
 }
 
 int visibility_end(struct visibility *visibility)
@@ -183,9 +222,8 @@ static uint32_t number_of(const uint8_t pixel[4])
 float visibility_depth_m(const struct visibility *visibility, int x, int y)
 {
 	const uint8_t *pixel = visibility->pixels + 4 * (y * VISIBILITY_WIDTH + x);
-	if (number_of(pixel) == 0)
-		return INFINITY;
-	return (float)(pixel[2] << 8 | pixel[3]) / 65535 * visibility->far_m;
+	const int depth = pixel[2] << 8 | pixel[3];
+	return depth > 0 ? (float)depth / 65535 * visibility->far_m : INFINITY;
 }
 
 bool visibility_at(const struct visibility *visibility, int x, int y, struct visibility_point *out)

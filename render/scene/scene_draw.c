@@ -344,7 +344,10 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	section_cut(&scene->tools.section, view.eye_m, view.cut);
 	bool moved = view_changed(scene, &view) || scene->tools_moved;
 	const float passed = passed_ms(scene);
-	moved = scene_step_scenery(scene, passed) || moved;
+	if (scene_step_scenery(scene, passed)) {
+		scene_forget_references(scene);
+		moved = true;
+	}
 	scene->tools_moved = false;
 	scene->still_frames = moved ? 0 : scene->still_frames + 1;
 	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;

@@ -138,6 +138,7 @@ struct scene_scenery {
 	bool is_here;
 	bool is_ready; /* its programs are built, so it appears */
 	bool lacks;    /* the last picture had plainer programs */
+	bool moves;    /* this frame shows it otherwise than the last one */
 };
 
 struct scene {

@@ -9,6 +9,7 @@
 #include "render/scene/scene_mark.h"
 #include "render/scene/scene_picture.h"
 #include "render/scene/scene_plan.h"
+#include "render/scene/scene_scenery.h"
 #include "render/scene/scene_visibility.h"
 
 enum { DEPTH_FRAMES = 4 }; /* between two that renew depths of faces */
@@ -26,15 +27,20 @@ static const float newest = 0.5f;
 bool scene_is_warped(const struct scene *scene)
 {
 	return scene->used.share < 1 && scene->has_hierarchy && scene->backdrop.share <= 0 &&
-	       !scene_scenery(scene) && scene->stream.growth.triangle_count == 0;
+	       scene_scenery_is_still(scene) && scene->stream.growth.triangle_count == 0;
+}
+
+void scene_forget_references(struct scene *scene)
+{
+	struct scene_references *r = &scene->references;
+	r->has_shown = r->is_begun = r->is_kept = false;
 }
 
 void scene_drop_references(struct scene *scene)
 {
-	struct scene_references *r = &scene->references;
 	for (int i = 0; i < 2; i++)
-		image_warp_let_go(&r->of[i]);
-	r->has_shown = r->is_begun = r->is_kept = false;
+		image_warp_let_go(&scene->references.of[i]);
+	scene_forget_references(scene);
 }
 
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms)
@@ -124,7 +130,7 @@ static bool begin(struct scene *scene, float ahead_ms)
 	}
 	scene_begin_picture(scene);
 	scene_list_pieces(scene);
-	r->is_begun = scene_begin_visibility(scene);
+	r->is_begun = scene_begin_visibility(scene, scene_scenery_far_m(scene, next->view.eye_m));
 	scene->view = seen;
 	scene_list_pieces(scene);
 	if (!r->is_begun)
@@ -155,6 +161,7 @@ static float draw_numbers(struct scene *scene, float cost)
 	r->numbered = to;
 	if (to < scene->counted_count)
 		return drawn;
+	scene_draw_scenery_depths(scene);
 	if (!r->is_kept)
 		scene_end_visibility(scene);
 	else if (visibility_end(&scene->visibility) < 0)
@@ -179,6 +186,7 @@ static void draw_pieces(struct scene *scene, float cost)
 	scene_resume_picture();
 	if (!scene_draw_slice(scene, &frame, &r->slice, cost))
 		return;
+	scene_draw_scenery(scene, &frame);
 	scene_draw_mask(scene, &small, &next->picture);
 	outline_draw(&scene->outline, &place, small.width_px, small.height_px);
 	r->shown = 1 - r->shown;

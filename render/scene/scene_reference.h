@@ -6,8 +6,8 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Returns whether this frame shows a reference picture. Not what moves by itself, nor what the
- * visibility pass does not know: scenery, backdrop, streaming mesh. */
+/* Returns whether this frame shows a reference picture. Not where scenery moves, nor with what the
+ * visibility pass does not know: backdrop, streaming mesh. */
 bool scene_is_warped(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
@@ -20,7 +20,9 @@ bool scene_show_reference(struct scene *scene, const struct gl_place *place);
 /* At rest: draws the one that the next motion begins with, unless it did since the picture last
  * changed, so that the answer to a touch need not wait for a whole one. */
 void scene_keep_reference(struct scene *scene);
-/* Drops what they show, and frees them. */
+/* The scene is no longer as they show it. */
+void scene_forget_references(struct scene *scene);
+/* Forgets them, and frees them. */
 void scene_drop_references(struct scene *scene);
 
 #endif

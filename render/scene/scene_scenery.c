@@ -49,8 +49,17 @@ static bool is_shown(const struct scene *scene)
 
 bool scene_step_scenery(struct scene *scene, float passed_ms)
 {
-	return is_shown(scene) && scene->scenery.is_ready &&
-	       pose_step(&scene->scenery.pose, passed_ms);
+	struct scene_scenery *own = &scene->scenery;
+
+	own->moves = is_shown(scene) && own->is_ready && pose_step(&own->pose, passed_ms);
+	return own->moves;
+}
+
+bool scene_scenery_is_still(const struct scene *scene)
+{
+	const struct scene_scenery *own = &scene->scenery;
+
+	return !is_shown(scene) || (own->is_ready && !own->lacks && !own->moves);
 }
 
 struct surface_fog scene_fog(const struct scene *scene)
@@ -100,6 +109,23 @@ void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame)
 		own->lacks = !scenery_picture_draw(&own->picture, &own->pose, frame);
 	else if (!scene->programs_wait)
 		prepare(scene, frame);
+}
+
+void scene_draw_scenery_depths(struct scene *scene)
+{
+	struct scene_scenery *own = &scene->scenery;
+	const struct view *view = &scene->visibility.view;
+
+	if (!is_shown(scene) || !own->is_ready)
+		return;
+	pose_look(&own->pose, view->eye_m, view->up);
+	scenery_picture_bend(&own->picture, &own->pose);
+	scenery_picture_depths(&own->picture, &own->pose, &scene->visibility);
+}
+
+float scene_scenery_far_m(const struct scene *scene, const float eye_m[3])
+{
+	return is_shown(scene) ? scenery_picture_far_m(&scene->scenery.pose, eye_m) : 0;
 }
 
 uint64_t scene_scenery_bytes(const struct scene *scene)

@@ -18,6 +18,13 @@ uint64_t scene_scenery_bytes(const struct scene *scene);
 bool scene_scenery_waits(const struct scene *scene);
 /* Draws it over the patches. What has just come is made ready first, and appears then. */
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame);
+/* Returns whether a picture of this frame would have it as it stays until it is touched: it is
+ * ready, and nothing of it moves. True without scenery. */
+bool scene_scenery_is_still(const struct scene *scene);
+/* Draws its depths into the visibility pass that was begun. */
+void scene_draw_scenery_depths(struct scene *scene);
+/* Returns how far from an eye it may reach; metres, 0: none is shown. */
+float scene_scenery_far_m(const struct scene *scene, const float eye_m[3]);
 /* Returns the node of the scenery that the ray meets before *distance_m, which is lowered to it, or
  * SCENERY_NONE. */
 uint32_t scene_ray_scenery(const struct scene *scene, const float from_m[3],

@@ -52,7 +52,7 @@ void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 	}
 }
 
-bool scene_begin_visibility(struct scene *scene)
+bool scene_begin_visibility(struct scene *scene, float beside_m)
 {
 	const uint32_t all = scene->visible_count + scene->leaving_count;
 	if (ARRAY_RESERVE(scene->counted, scene->counted_room, all, UINT32_MAX) < 0) {
@@ -66,7 +66,7 @@ bool scene_begin_visibility(struct scene *scene)
 		memcpy(scene->counted, scene->visible, all * sizeof(*scene->counted));
 	scene->references.is_begun = false;
 	scene->counting_cut = scene->cut_signature;
-	visibility_begin(&scene->visibility, &scene->view, &scene->root);
+	visibility_begin(&scene->visibility, &scene->view, &scene->root, beside_m);
 	return true;
 }
 
@@ -87,7 +87,7 @@ static bool draw(struct scene *scene, bool moved)
 	} else {
 		/* A pass that had to begin again is drawn at once, or it might never end. */
 		parts = scene->counting ? 1 : parts;
-		if (!scene_begin_visibility(scene))
+		if (!scene_begin_visibility(scene, 0))
 			return false;
 		scene->counted_drawn = 0;
 	}

@@ -8,9 +8,9 @@
  * Returns whether anything was drawn for it. */
 bool scene_take_visibility(struct scene *scene, bool moved);
 
-/* The same in steps. Begins a pass of the listed pieces in the view of the frame; false: without
- * memory for it. */
-bool scene_begin_visibility(struct scene *scene);
+/* The same in steps. Begins a pass of the listed pieces in the view of the frame, beside_m as
+ * visibility_begin has it; false: without memory for it. */
+bool scene_begin_visibility(struct scene *scene, float beside_m);
 /* Draws those of scene->counted from `from` to below `to`, in the pass's target. */
 void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to);
 /* Reads the pass back and counts. */

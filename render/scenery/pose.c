@@ -322,7 +322,7 @@ bool pose_moves(const struct pose *pose)
 	for (uint32_t i = 0; i < pose->scenery->motion_count; i++)
 		if (pose->motions[i].runs)
 			return true;
-	return pose->was_dragged || pose->appeared < 1 || pose->layer_shares[pose->layer] < 1;
+	return pose->was_set || pose->appeared < 1 || pose->layer_shares[pose->layer] < 1;
 }
 
 bool pose_step(struct pose *pose, float passed_ms)
@@ -334,7 +334,7 @@ bool pose_step(struct pose *pose, float passed_ms)
 			step_motion(pose, i, passed_ms);
 	step_layers(pose, passed_ms);
 	pose->appeared = vec_least(pose->appeared + passed_ms / appear_ms, 1);
-	pose->was_dragged = false;
+	pose->was_set = false;
 	settle(pose);
 	return true;
 }
@@ -405,7 +405,7 @@ void pose_drag(struct pose *pose, const float from_m[3], const float direction[3
 			vec_copy(place->move_m, value);
 		else
 			memcpy(place->turn, value, sizeof(place->turn));
-		pose->was_dragged = true;
+		pose->was_set = true;
 	}
 	settle(pose);
 }
@@ -439,7 +439,6 @@ static void reset_drags(struct pose *pose)
 			vec_copy(pose->places[of->node].move_m, rest->move_m);
 		else
 			memcpy(pose->places[of->node].turn, rest->turn, sizeof(rest->turn));
-		pose->was_dragged = true;
 	}
 }
 
@@ -467,5 +466,6 @@ void pose_reset(struct pose *pose)
 		}
 	}
 	reset_drags(pose);
+	pose->was_set = true;
 	settle(pose);
 }

@@ -29,7 +29,7 @@ struct pose {
 	struct drag *drags;
 	struct bend bend; /* owned */
 	uint32_t held;    /* the handle that a finger drags; SCENERY_NONE: none */
-	bool was_dragged; /* since the last step */
+	bool was_set;     /* by a finger or a reset, since the last step */
 	uint32_t layer;   /* the chosen one */
 	float layer_shares[SCENERY_LAYERS_MAX]; /* their sum is 1 */
 	float appeared;                         /* all of it, 0 to 1 */

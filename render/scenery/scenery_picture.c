@@ -446,6 +446,53 @@ bool scenery_picture_prepare(struct scenery_picture *picture, const struct pose 
 	return !picture->programs.is_built;
 }
 
+/* ---- depths */
+
+void scenery_picture_depths(struct scenery_picture *picture, const struct pose *pose,
+			    struct visibility *visibility)
+{
+	const struct surface_frame frame = { .view = &visibility->view };
+	const struct drawing drawing = { .picture = picture, .pose = pose, .frame = &frame };
+	const struct scenery *scenery = pose->scenery;
+
+	glBindBuffer(GL_ARRAY_BUFFER, picture->vertices);
+	glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, picture->indices);
+	for (uint32_t i = 0; i < scenery->mesh_count; i++) {
+		const struct scenery_mesh *mesh = &scenery->meshes[i];
+		const struct pose_node *node = &pose->nodes[mesh->node];
+		const struct scenery_offset *at = &picture->offsets[i];
+		float model[16];
+
+		if (!is_solid(scenery, i) || !is_seen(&drawing, i) ||
+		    !dissolve_is_whole((struct dissolve_range){ node->low, node->high }))
+			continue;
+		lattice_matrix(model, mesh, node->matrix, visibility->view.eye_m);
+		if (!visibility_beside(visibility, model))
+			return;
+		glVertexAttribPointer(
+			0, 3, GL_UNSIGNED_SHORT, GL_FALSE, sizeof(struct scenery_vertex),
+			(void *)(at->vertex_bytes + offsetof(struct scenery_vertex, place)));
+		draw_triangles(at->index_bytes, mesh->triangle_count);
+	}
+}
+
+float scenery_picture_far_m(const struct pose *pose, const float eye_m[3])
+{
+	float far_m = 0;
+
+	for (uint32_t i = 0; i < pose->scenery->mesh_count; i++) {
+		const struct scenery_mesh *mesh = &pose->scenery->meshes[i];
+		const struct pose_node *node = &pose->nodes[mesh->node];
+		float centre[3], radius;
+
+		if (!dissolve_draws((struct dissolve_range){ node->low, node->high }))
+			continue;
+		radius = ball_of(mesh, node->matrix, centre);
+		far_m = vec_most(far_m, vec_distance(centre, eye_m) + radius);
+	}
+	return far_m;
+}
+
 /* ---- rays */
 
 /* Whether a ray meets a ball. */

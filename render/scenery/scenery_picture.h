@@ -4,6 +4,7 @@
 #define GOPURA_RENDER_SCENERY_SCENERY_PICTURE_H
 
 #include "geometry/appearance.h"
+#include "render/lumigraph/visibility.h"
 #include "render/scenery/pose.h"
 #include "render/scenery/scenery_order.h"
 #include "render/scenery/scenery_program.h"
@@ -52,6 +53,12 @@ bool scenery_picture_draw(struct scenery_picture *picture, const struct pose *po
  * bound target without changing its picture. Returns whether there was none left to build. */
 bool scenery_picture_prepare(struct scenery_picture *picture, const struct pose *pose,
 			     const struct surface_frame *frame);
+
+/* Draws what is solid and does not dissolve into a visibility pass, beside the pieces. */
+void scenery_picture_depths(struct scenery_picture *picture, const struct pose *pose,
+			    struct visibility *visibility);
+/* Returns how far from an eye what the pose shows may be; metres, 0: nothing is shown. */
+float scenery_picture_far_m(const struct pose *pose, const float eye_m[3]);
 
 /* Finds the nearest mesh along a ray, of those that are more than half solid; direction is a unit
  * vector. Returns its node and lowers *distance_m to where it is, or SCENERY_NONE where none is

@@ -56,13 +56,19 @@ static inline void strike_stage(struct stage *stage)
 	headless_destroy(stage->headless);
 }
 
-static inline void draw_stage(struct stage *stage, const struct camera *camera)
+static inline void draw_marked_stage(struct stage *stage, const struct camera *camera,
+				     const struct scene_mark *mark)
 {
 	memcpy(stage->before, stage->seen, sizeof(stage->seen));
 	gl_target_bind(&stage->target);
 	CHECK(scene_dispatch(stage->scene) == 0);
-	scene_draw(stage->scene, camera, NULL, &stage->frame);
+	scene_draw(stage->scene, camera, mark, &stage->frame);
 	CHECK(gl_target_read(&stage->target, stage->seen) == 0);
+}
+
+static inline void draw_stage(struct stage *stage, const struct camera *camera)
+{
+	draw_marked_stage(stage, camera, NULL);
 }
 
 #endif

@@ -107,6 +107,13 @@ static int strike_stage(void **state)
 	return 0;
 }
 
+static void draw(void)
+{
+	gl_target_bind(&stage.target);
+	CHECK(scene_dispatch(stage.scene) == 0);
+	scene_draw(stage.scene, &eye, NULL, &stage.frame);
+}
+
 static void settle(const char *name)
 {
 	char path[512];
@@ -115,9 +122,7 @@ static void settle(const char *name)
 	stage.frame.settled = false;
 	for (int frames = 0; !stage.frame.settled; frames++) {
 		CHECK(frames < FRAMES_MAX);
-		gl_target_bind(&stage.target);
-		CHECK(scene_dispatch(stage.scene) == 0);
-		scene_draw(stage.scene, &eye, NULL, &stage.frame);
+		draw();
 		little_release_serve(release, stage.scene, 16);
 	}
 	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
@@ -485,6 +490,93 @@ static void a_frame_builds_one_program_at_most(void **state)
 	assert_int_equal(count_programs(), 7);
 }
 
+/* ---- where frames take too long */
+
+/* Draws a frame from an eye that goes on to the side. */
+static void draw_aside(float share)
+{
+	struct scene_effort effort = scene_effort_full;
+
+	effort.scale = 0.5f;
+	effort.share = share;
+	eye.eye_m[0] += 0.02f;
+	scene_spend(stage.scene, &effort);
+	draw();
+	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+}
+
+/* The same as before, in pictures that are warped for the frames in between. */
+static void a_door_is_where_the_eye_sees_it_in_a_warped_picture(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	float moved = 0;
+
+	(void)state;
+	settle("closed");
+	for (int i = 0; i < 40; i++) {
+		draw_aside(0.2f);
+		CHECK(r->has_shown);
+		moved = vec_most(moved, vec_distance(r->of[r->shown].view.eye_m, eye.eye_m));
+		CHECK(is_wood(1.5f, -6, 1.5f) && is_wood(2.7f, -6, 0.5f) &&
+		      !is_wood(3.4f, -6, 1.5f));
+		CHECK(is_wood(0.3f, -6, 2.7f) && !is_wood(-0.4f, -6, 1.5f));
+	}
+	CHECK(moved > 0.03f);
+}
+
+/* Until it has opened, whole pictures are drawn, and none from before is shown after it. */
+static void a_door_that_opens_is_not_warped(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	int frames = 0;
+
+	(void)state;
+	settle("closed");
+	draw_aside(0.2f);
+	CHECK(r->has_shown && touch(1.5f, -6, 1.5f));
+	do {
+		draw_aside(0.2f);
+		CHECK(frames++ < FRAMES_MAX);
+		CHECK(stage.scene->scenery.moves == !r->has_shown);
+	} while (stage.scene->scenery.moves);
+	CHECK(frames > 2);
+	CHECK(!is_wood(2.8f, -6, 0.3f) && is_wood(0, -4.5f, 1.5f));
+}
+
+/* Returns the depth that a place has in the pass, and sets the pixel where it is. */
+static float place_in_pass(const float at_m[3], int *x, int *y)
+{
+	const struct view *view = &stage.scene->visibility.view;
+	float to[3], depth_m;
+
+	vec_sub(to, at_m, view->eye_m);
+	depth_m = vec_dot(to, view->forward);
+	*x = (int)((1 + vec_dot(to, view->right) / depth_m / view->tan_x) * VISIBILITY_WIDTH / 2);
+	*y = (int)((1 + vec_dot(to, view->up) / depth_m / view->tan_y) * VISIBILITY_HEIGHT / 2);
+	return depth_m;
+}
+
+/* It has depths there, but is no piece, and hides those behind it. */
+static void scenery_is_in_the_visibility_pass_of_a_picture(void **state)
+{
+	static const float on_door_m[3] = { 1.5f, -6, 1.5f }, on_floor_m[3] = { 0, -8, 0 };
+	const struct visibility *pass = &stage.scene->visibility;
+	struct visibility_point point;
+	float depth_m;
+	int x, y;
+
+	(void)state;
+	settle("closed");
+	draw_aside(0.2f);
+	depth_m = place_in_pass(on_door_m, &x, &y);
+	CHECK(!visibility_at(pass, x, y, &point));
+	CHECK(fabsf(visibility_depth_m(pass, x, y) - depth_m) < 0.05f);
+	depth_m = place_in_pass(on_floor_m, &x, &y);
+	CHECK(visibility_at(pass, x, y, &point));
+	CHECK(fabsf(point.at_m[2]) < 0.1f &&
+	      fabsf(visibility_depth_m(pass, x, y) - depth_m) < 0.2f);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -500,6 +592,12 @@ int main(void)
 		cmocka_unit_test_setup_teardown(fog_hides_by_distance, raise_stage, strike_stage),
 		cmocka_unit_test_setup_teardown(a_frame_builds_one_program_at_most, raise_stage,
 						strike_stage),
+		cmocka_unit_test_setup_teardown(a_door_is_where_the_eye_sees_it_in_a_warped_picture,
+						raise_stage, strike_stage),
+		cmocka_unit_test_setup_teardown(a_door_that_opens_is_not_warped, raise_stage,
+						strike_stage),
+		cmocka_unit_test_setup_teardown(scenery_is_in_the_visibility_pass_of_a_picture,
+						raise_stage, strike_stage),
 	};
 	int failed;
 

@@ -1,0 +1,187 @@
+/* Where frames take too long, pictures are drawn in slices and warped to where the eye is: they
+ * look like those that are drawn whole. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "render/scene/scene_parts.h"
+#include "tests/render/scene/little_stage.h"
+
+enum { FRAMES_MAX = 3000 };
+
+static struct little_release *release; /* made once for all tests */
+static struct stage stage;
+
+static int raise(void **state)
+{
+	(void)state;
+	raise_stage(&stage, release, SCENE_LUMIGRAPH);
+	return 0;
+}
+
+static int strike(void **state)
+{
+	(void)state;
+	strike_stage(&stage);
+	return 0;
+}
+
+static void settle(void)
+{
+	for (int i = 0; i < FRAMES_MAX; i++) {
+		draw_stage(&stage, &usual_camera);
+		if (stage.frame.settled)
+			return;
+		(void)little_release_serve(release, stage.scene, 16);
+	}
+	fail_msg("not settled");
+}
+
+/* Draws one frame from an eye that has gone aside, at half the scale. */
+static void draw_aside(float aside_m, float share, const struct scene_mark *mark)
+{
+	struct scene_effort effort = scene_effort_full;
+	struct camera camera = usual_camera;
+
+	effort.scale = 0.5f;
+	effort.share = share;
+	for (int k = 0; k < 2; k++) {
+		camera.eye_m[k] += 0.7f * aside_m;
+		camera.target_m[k] += 0.1f * aside_m;
+	}
+	scene_spend(stage.scene, &effort);
+	draw_marked_stage(&stage, &camera, mark);
+}
+
+static double difference(const uint8_t *a, const uint8_t *b)
+{
+	double sum = 0;
+
+	for (int i = 0; i < 4 * PIXELS; i++)
+		sum += (a[i] - b[i]) * (a[i] - b[i]);
+	return sum / (4.0 * PIXELS);
+}
+
+/* How many pixels differ by more than that in some channel. */
+static int pixels_changed(const uint8_t *a, const uint8_t *b, int by)
+{
+	int count = 0;
+
+	for (int i = 0; i < 4 * PIXELS; i += 4)
+		count += abs(a[i] - b[i]) > by || abs(a[i + 1] - b[i + 1]) > by ||
+			 abs(a[i + 2] - b[i + 2]) > by;
+	return count;
+}
+
+/* While the next one is drawn in slices, each frame shows the last one as the eye sees it. */
+static void a_warped_picture_is_that_of_the_eye(void **state)
+{
+	static uint8_t old[4 * PIXELS];
+	const struct scene_references *r = &stage.scene->references;
+	uint32_t changes = 0;
+	int shown = -1;
+
+	(void)state;
+	settle();
+	draw_aside(0, 1, NULL);
+	memcpy(old, stage.seen, sizeof(old));
+	CHECK(!r->has_shown);
+	for (int i = 1; i <= 48; i++) {
+		const float aside_m = 0.025f * (float)i;
+
+		draw_aside(aside_m, 0.2f, NULL);
+		CHECK(r->has_shown);
+		changes += shown >= 0 && r->shown != shown;
+		shown = r->shown;
+		if (i < 24)
+			continue;
+		draw_aside(aside_m, 1, NULL); /* not moved, but drawn directly */
+		CHECK(difference(stage.before, stage.seen) < difference(old, stage.seen) / 5);
+		CHECK(difference(stage.before, stage.seen) > 0);
+	}
+	CHECK(changes >= 3 && changes <= 10); /* drawn in slices, not in each frame */
+}
+
+/* What a motion begins with is there before it begins, where it must be: it takes memory. */
+static void a_resting_eye_keeps_a_picture_for_the_next_motion(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	struct scene_effort effort = scene_effort_full;
+	struct view kept;
+
+	(void)state;
+	settle();
+	CHECK(!r->has_shown && !r->of[0].picture.framebuffer && !r->of[1].picture.framebuffer);
+	effort.scale = 0.5f;
+	effort.share = 0.2f;
+	scene_spend(stage.scene, &effort);
+	settle();
+	CHECK(r->has_shown && !r->is_begun);
+	kept = r->of[r->shown].view;
+	CHECK(memcmp(kept.eye_m, usual_camera.eye_m, sizeof(kept.eye_m)) == 0);
+	draw_aside(0.01f, 0.2f, NULL);
+	draw_aside(0.02f, 0.2f, NULL);
+	CHECK(stage.frame.moved && r->is_begun);
+	CHECK(memcmp(&kept, &r->of[r->shown].view, sizeof(kept)) == 0);
+	scene_spend(stage.scene, &scene_effort_full);
+	settle();
+	CHECK(!r->has_shown && !r->of[0].picture.framebuffer && !r->of[1].picture.framebuffer);
+}
+
+/* An eye that is suddenly elsewhere sees a picture of that place at once; so does one of another
+ * release, in the middle of a picture. */
+static void a_jump_shows_nothing_of_the_old_place(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+
+	(void)state;
+	settle();
+	for (int i = 0; i < 3; i++)
+		draw_aside(0.01f * (float)i, 0.2f, NULL);
+	draw_aside(8, 0.2f, NULL);
+	CHECK(r->has_shown);
+	draw_aside(8, 1, NULL);
+	CHECK(difference(stage.before, stage.seen) < 250);
+	for (int i = 1; i <= 2; i++) /* one of them may be for depths of a face */
+		draw_aside(8 + 0.01f * (float)i, 0.2f, NULL);
+	CHECK(r->is_begun);
+	CHECK(scene_open(stage.scene, release->root, release->root_bytes) == 0);
+	CHECK(!r->has_shown && !r->is_begun);
+	settle();
+}
+
+static void a_warped_picture_has_the_mark(void **state)
+{
+	static const struct scene_mark pillar = { .region = { .kind = REGION_BOX,
+							      .centre_m = { 4, -4, 2.2f },
+							      .half_m = { 1.2f, 1.2f, 1.7f } } };
+	static uint8_t marked[4 * PIXELS];
+	int bold;
+
+	(void)state;
+	settle();
+	for (int i = 1; i <= 12; i++)
+		draw_aside(0.01f * (float)i, 0.2f, &pillar);
+	memcpy(marked, stage.seen, sizeof(marked));
+	for (int i = 1; i <= 12; i++)
+		draw_aside(0.01f * (float)i, 0.2f, NULL);
+	bold = pixels_changed(stage.seen, marked, 60);
+	CHECK(bold > 50 && bold < PIXELS / 8);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(a_warped_picture_is_that_of_the_eye, raise, strike),
+		cmocka_unit_test_setup_teardown(a_resting_eye_keeps_a_picture_for_the_next_motion,
+						raise, strike),
+		cmocka_unit_test_setup_teardown(a_jump_shows_nothing_of_the_old_place, raise,
+						strike),
+		cmocka_unit_test_setup_teardown(a_warped_picture_has_the_mark, raise, strike),
+	};
+	int failed;
+
+	release = little_release_make(4);
+	failed = cmocka_run_group_tests(tests, NULL, NULL);
+	little_release_free(release);
+	return failed;
+}
