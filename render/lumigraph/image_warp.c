@@ -11,8 +11,8 @@ static const float sky_m = 1e6f;
 /* The ring of cells reaches out by so much of half the picture. */
 static const float ring = 0.5f;
 /* How far the eye may be from the reference's, as a share of what is nearest, and how far it may
- * have turned: the cosine of 26 degrees. */
-static const float reach_share = 1, reach_cosine = 0.9f;
+ * have turned: the cosine of 18 degrees. */
+static const float reach_share = 1, reach_cosine = 0.95f;
 /* Nearer than this share of the nearest depth a point counts as there: it is at the eye. */
 static const float least_share = 0.02f;
 

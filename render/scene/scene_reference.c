@@ -12,7 +12,8 @@
 #include "render/scene/scene_scenery.h"
 #include "render/scene/scene_visibility.h"
 
-enum { DEPTH_FRAMES = 4 }; /* between two that renew depths of faces */
+/* Frames between two that renew depths of faces, and between two where some are missing. */
+enum { DEPTH_FRAMES = 4, MISSING_FRAMES = 2 };
 
 /* What counting a pass takes that was read back, in triangles of it. */
 static const float counting_cost = 0.4f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
@@ -21,8 +22,11 @@ static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for
  * farther away than this share of what is nearest: eyes stop and turn round. */
 static const float lead_most_ms = 300, lead_most_share = 0.4f;
-/* The newest frame's share of the eye's speed. */
-static const float newest = 0.5f;
+/* The eye's speed is that of about so long: fingers tremble. */
+static const float speed_ms = 60;
+/* A turn uncovers the edge of a picture as long as it is shown, so its direction is that of the
+ * middle of that time. */
+static const float turn_lead = 1.5f;
 
 bool scene_is_warped(const struct scene *scene)
 {
@@ -49,27 +53,28 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 	const struct view *was = &scene->view;
 	if (!scene->has_view || passed_ms <= 0)
 		return;
+	r->moving_frames = scene->was_moving ? r->moving_frames + 1 : 1;
+	const float newest = fmaxf(passed_ms / (passed_ms + speed_ms), 1 / (float)r->moving_frames);
 	for (int k = 0; k < 3; k++) {
 		const float moved = (view->eye_m[k] - was->eye_m[k]) / passed_ms;
 		const float turned = (view->forward[k] - was->forward[k]) / passed_ms;
 		r->eye_speed[k] += newest * (moved - r->eye_speed[k]);
 		r->turn_speed[k] += newest * (turned - r->turn_speed[k]);
 	}
-	if (scene->was_moving)
-		r->frame_ms += newest * (passed_ms - r->frame_ms);
+	r->begun_ms += passed_ms;
 }
 
 /* ---- the view of the next one */
 
-/* Returns in how many milliseconds the next picture is shown first: it is drawn in 1 / share
- * frames. A lead to the middle of the time in which it is shown gave no better pictures
+/* Returns in how many milliseconds the next picture is shown first, if it takes as long as the last
+ * one. A lead to the middle of the time in which it is shown gave no better pictures
  * (docs/figures.md). */
 static float lead_ms(const struct scene *scene)
 {
 	const struct scene_references *r = &scene->references;
 	const float speed = sqrtf(vec_dot(r->eye_speed, r->eye_speed));
 	const float most_m = lead_most_share * r->of[r->shown].nearest_m;
-	float ms = fminf(r->frame_ms / scene->used.share, lead_most_ms);
+	float ms = fminf(r->took_ms, lead_most_ms);
 	if (speed * ms > most_m)
 		ms = most_m / speed;
 	return ms;
@@ -83,7 +88,7 @@ static struct view view_ahead(const struct scene *scene, float ms)
 	float forward[3];
 	for (int k = 0; k < 3; k++) {
 		camera.eye_m[k] += ms * r->eye_speed[k];
-		forward[k] = scene->view.forward[k] + ms * r->turn_speed[k];
+		forward[k] = scene->view.forward[k] + turn_lead * ms * r->turn_speed[k];
 	}
 	vec_normalise(forward);
 	for (int k = 0; k < 3; k++)
@@ -136,6 +141,7 @@ static bool begin(struct scene *scene, float ahead_ms)
 	if (!r->is_begun)
 		return false;
 	scene->counting = r->is_read = false;
+	r->begun_ms = 0;
 	r->numbered = 0;
 	sum_costs(scene, small.picture_px);
 	const struct surface_frame frame = scene_surface_frame(scene, &small, PICTURE_ASIDE);
@@ -192,6 +198,8 @@ static void draw_pieces(struct scene *scene, float cost)
 	r->shown = 1 - r->shown;
 	r->has_shown = true;
 	r->is_begun = false;
+	if (r->begun_ms > 0)
+		r->took_ms = r->begun_ms;
 }
 
 /* Returns whether a face that is used has no depths. */
@@ -212,7 +220,7 @@ bool scene_build_reference(struct scene *scene)
 	r->is_kept = false;
 	const bool whole = !r->has_shown || !image_warp_reaches(&r->of[r->shown], &scene->view);
 	r->since_depth++;
-	if (!whole && r->since_depth > (depth_is_missing(scene) ? 1 : DEPTH_FRAMES)) {
+	if (!whole && r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
 		r->since_depth = 0;
 		return false;
 	}

@@ -3,7 +3,7 @@
  *
  *   bench_visit RELEASE VISIT OUT [--truth FOLDER] [--size WxH] [--link MBIT] [--latency MS]
  *               [--price PX] [--load none|core|heat] [--level L] [--times N]
- *               [--effort SCALE,TRIANGLES,FACES,BUDGET[,SHARE]] [--keep yes]
+ *               [--effort SCALE,TRIANGLES,FACES,BUDGET[,SHARE]] [--layer N] [--keep yes]
  *
  * A frame takes the time that its work takes on two cores (stage.h, work_clock), so other work on
  * the machine hardly changes what is measured, and neither does the comparison with the truth. The
@@ -12,7 +12,8 @@
  *
  * --load core: from 2 to 12 s one of the two cores is taken away. heat: from 2 s on the clock falls
  * to two thirds within 5 s, and is back at 15 s. --level holds the governor there, --effort
- * that effort. --times plays the legs after the first rest so many times, each way from its begin.
+ * that effort. --layer shows that layer of scenery. --times plays the legs after the first rest so
+ * many times, each way from its begin.
  *
  * Writes OUT/views.txt first: the moments that are judged, four of a second of motion and each
  * rest, for `gopura-content render --views`; without --truth that is all. Then OUT/visit.json and
@@ -59,7 +60,7 @@ struct bench {
 	struct scene_effort effort; /* if is_held and its scale is not 0 */
 	enum load load;
 	bool keeps, is_held;
-	uint32_t times;
+	uint32_t times, layer;
 	struct shot shot[FRAMES_MAX];
 	uint32_t shot_count;
 };
@@ -190,6 +191,7 @@ static struct shot *shoot(struct bench *bench, uint32_t leg, int64_t began_us,
 	if (shot->rests)
 		target_us = REFRESH_US;
 	stage->options.frame_us = (uint32_t)target_us;
+	scene_choose_layer(stage->scene, bench->layer);
 	stage_frame(stage, camera, &frame);
 	shot->spent_ms = (double)stage->spent_us / 1000;
 	shot->wall_ms = (double)stage->wall_us / 1000;
@@ -446,6 +448,8 @@ static void read_option(struct bench *bench, const char *name, const char *value
 		bench->options.scene.price_px_per_kb = strtof(value, NULL);
 	else if (!strcmp(name, "--times"))
 		bench->times = (uint32_t)strtoul(value, NULL, 10);
+	else if (!strcmp(name, "--layer"))
+		bench->layer = (uint32_t)strtoul(value, NULL, 10);
 	else if (!strcmp(name, "--keep"))
 		bench->keeps = true;
 	else if (!strcmp(name, "--level")) {
