@@ -73,7 +73,7 @@ struct scene_references {
 	int shown; /* of the two, if has_shown */
 	bool has_shown;
 	bool is_begun;            /* the other one is being drawn */
-	bool is_read;             /* its visibility pass was read back */
+	bool is_read, is_counted; /* its visibility pass was */
 	uint32_t since_depth;     /* frames since one was left to depths of faces */
 	bool is_kept;             /* the one that is shown next was drawn at rest, for this view */
 	uint32_t numbered;        /* of its pieces, the first that are in the pass */

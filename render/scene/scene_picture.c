@@ -13,7 +13,7 @@ enum { NEW_BUDGET_US = 30000 }; /* for the first triangles with a program */
 
 /* What a triangle and a seen pixel take of a picture, in triangles of the visibility pass, by two
  * cores without a GPU. */
-static const float triangle_cost = 1.4f, fragment_cost = 0.4f;
+static const float triangle_cost = 0.5f, fragment_cost = 0.15f;
 
 /* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
  * uniforms of their own are drawn together. */

@@ -15,8 +15,9 @@
 /* Frames between two that renew depths of faces, and between two where some are missing. */
 enum { DEPTH_FRAMES = 4, MISSING_FRAMES = 2 };
 
-/* What counting a pass takes that was read back, in triangles of it. */
-static const float counting_cost = 0.4f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
+/* What reading a pass back and what counting it takes, in triangles of it. */
+static const float reading_cost = 0.3f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
+static const float counting_cost = 0.5f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
 /* Its field of view is so much wider, for what the eye turns to. */
 static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for
@@ -110,7 +111,7 @@ static struct image_warp_reference *coming(struct scene *scene)
 
 static void sum_costs(struct scene *scene, float picture_px)
 {
-	float cost = counting_cost;
+	float cost = reading_cost + counting_cost;
 	for (uint32_t i = 0; i < scene->counted_all; i++) {
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
@@ -140,7 +141,7 @@ static bool begin(struct scene *scene, float ahead_ms)
 	scene_list_pieces(scene);
 	if (!r->is_begun)
 		return false;
-	scene->counting = r->is_read = false;
+	scene->counting = r->is_read = r->is_counted = false;
 	r->begun_ms = 0;
 	r->numbered = 0;
 	sum_costs(scene, small.picture_px);
@@ -149,8 +150,7 @@ static bool begin(struct scene *scene, float ahead_ms)
 	return true;
 }
 
-/* Draws pieces of the visibility pass until the cost is reached; reads it back after the last one.
- * Returns what it cost. */
+/* Draws pieces of the visibility pass until the cost is reached. Returns that of those it drew. */
 static float draw_numbers(struct scene *scene, float cost)
 {
 	struct scene_references *r = &scene->references;
@@ -165,16 +165,18 @@ static float draw_numbers(struct scene *scene, float cost)
 	visibility_resume(&scene->visibility, &scene->root);
 	scene_draw_numbers(scene, r->numbered, to);
 	r->numbered = to;
-	if (to < scene->counted_count)
-		return drawn;
+	return drawn;
+}
+
+/* Draws scenery into the pass, and takes its depths. */
+static void read_depths(struct scene *scene)
+{
+	visibility_resume(&scene->visibility, &scene->root);
 	scene_draw_scenery_depths(scene);
-	if (!r->is_kept)
-		scene_end_visibility(scene);
-	else if (visibility_end(&scene->visibility) < 0)
+	if (visibility_end(&scene->visibility) < 0)
 		log_warn("render", "a picture will be warped with the depths of another one");
 	image_warp_take_depths(coming(scene), &scene->visibility);
-	r->is_read = true;
-	return drawn + counting_cost;
+	scene->references.is_read = true;
 }
 
 /* Draws pieces of the picture. After the last one it is the one that is shown. */
@@ -214,6 +216,27 @@ static bool depth_is_missing(const struct scene *scene)
 	return false;
 }
 
+/* Goes on with the picture that was begun until the cost is reached. */
+static void go_on(struct scene *scene, float cost)
+{
+	struct scene_references *r = &scene->references;
+	if (r->numbered < scene->counted_count)
+		cost -= draw_numbers(scene, cost);
+	if (r->numbered == scene->counted_count && !r->is_read && cost > 0) {
+		read_depths(scene);
+		cost -= reading_cost;
+	}
+	if (r->is_read && !r->is_counted && cost > 0) {
+		/* at rest the pass of the picture at rest was counted */
+		if (!r->is_kept)
+			scene_count_visibility(scene);
+		r->is_counted = true;
+		cost -= counting_cost;
+	}
+	if (r->is_counted && cost > 0)
+		draw_pieces(scene, cost);
+}
+
 bool scene_build_reference(struct scene *scene)
 {
 	struct scene_references *r = &scene->references;
@@ -224,17 +247,11 @@ bool scene_build_reference(struct scene *scene)
 		r->since_depth = 0;
 		return false;
 	}
-	float left = INFINITY;
 	if (whole)
 		r->is_begun = false;
 	if (!r->is_begun && !begin(scene, whole ? 0 : lead_ms(scene)))
 		return false;
-	if (!whole)
-		left = scene->used.share * r->cost;
-	if (!r->is_read)
-		left -= draw_numbers(scene, left);
-	if (r->is_read && left > 0)
-		draw_pieces(scene, left);
+	go_on(scene, whole ? INFINITY : scene->used.share * r->cost);
 	return true;
 }
 
@@ -248,8 +265,7 @@ void scene_keep_reference(struct scene *scene)
 	r->is_kept = true;
 	r->is_begun = false;
 	if (scene_is_warped(scene) && begin(scene, 0)) {
-		draw_numbers(scene, INFINITY);
-		draw_pieces(scene, INFINITY);
+		go_on(scene, INFINITY);
 		image_warp_let_go(coming(scene));
 	}
 	scene->used = scene_effort_full;

@@ -225,15 +225,13 @@ bool scene_take_visibility(struct scene *scene, bool moved)
 {
 	if (!scene->counting && !is_due(scene, moved))
 		return false;
-	if (draw(scene, moved))
-		scene_end_visibility(scene);
+	if (draw(scene, moved) && visibility_end(&scene->visibility) == 0)
+		scene_count_visibility(scene);
 	return true;
 }
 
-void scene_end_visibility(struct scene *scene)
+void scene_count_visibility(struct scene *scene)
 {
-	if (visibility_end(&scene->visibility) < 0)
-		return;
 	count_all(scene);
 	for (int round = 0; round < PROBE_MOVES; round++) {
 		for (uint32_t i = 0; i < scene->counted_count; i++)

@@ -13,7 +13,7 @@ bool scene_take_visibility(struct scene *scene, bool moved);
 bool scene_begin_visibility(struct scene *scene, float beside_m);
 /* Draws those of scene->counted from `from` to below `to`, in the pass's target. */
 void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to);
-/* Reads the pass back and counts. */
-void scene_end_visibility(struct scene *scene);
+/* Counts what the pass that was read back shows: pixels of pieces and patches; moves probes. */
+void scene_count_visibility(struct scene *scene);
 
 #endif
