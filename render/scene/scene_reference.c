@@ -23,6 +23,8 @@ static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for
  * farther away than this share of what is nearest: eyes stop and turn round. */
 static const float lead_most_ms = 300, lead_most_share = 0.4f;
+/* What is drawn of it beside a frame that none can be warped for: few frames are. */
+static const float direct_share = 0.34f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;
 /* A turn uncovers the edge of a picture as long as it is shown, so its direction is that of the
@@ -237,21 +239,28 @@ static void go_on(struct scene *scene, float cost)
 		draw_pieces(scene, cost);
 }
 
+/* Returns whether the last one shows the eye what it sees now. */
+static bool is_near(const struct scene *scene)
+{
+	const struct scene_references *r = &scene->references;
+	return r->has_shown && image_warp_reaches(&r->of[r->shown], &scene->view);
+}
+
 bool scene_build_reference(struct scene *scene)
 {
 	struct scene_references *r = &scene->references;
+	float share = scene->used.share;
 	r->is_kept = false;
-	const bool whole = !r->has_shown || !image_warp_reaches(&r->of[r->shown], &scene->view);
 	r->since_depth++;
-	if (!whole && r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
+	if (!is_near(scene))
+		share = fmaxf(share, direct_share);
+	else if (r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
 		r->since_depth = 0;
 		return false;
 	}
-	if (whole)
-		r->is_begun = false;
-	if (!r->is_begun && !begin(scene, whole ? 0 : lead_ms(scene)))
+	if (!r->is_begun && !begin(scene, lead_ms(scene)))
 		return false;
-	go_on(scene, whole ? INFINITY : scene->used.share * r->cost);
+	go_on(scene, share * r->cost);
 	return true;
 }
 
@@ -279,7 +288,7 @@ bool scene_show_reference(struct scene *scene, const struct gl_place *place)
 	struct scene_references *r = &scene->references;
 	const struct view *view = &scene->view;
 	struct view small;
-	if (!scene_is_warped(scene) || !r->has_shown)
+	if (!scene_is_warped(scene) || !is_near(scene))
 		return false;
 	enlargement_view(&small, view, scene->used.scale);
 	if (enlargement_begin(&scene->enlargement, &small) < 0)

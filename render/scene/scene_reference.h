@@ -11,11 +11,11 @@
 bool scene_is_warped(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
-/* Draws a share of the next reference picture; all of it where none can be shown. Every
- * fifth frame is left to depths of faces, and every second one where some are missing. Returns
- * whether anything was drawn. */
+/* Draws a share of the next reference picture, a larger one where none can be shown. Every fifth
+ * frame is left to depths of faces, and every third one where some are missing. Returns whether
+ * anything was drawn. */
 bool scene_build_reference(struct scene *scene);
-/* Shows the last one as the eye sees it now. Returns whether there is one. */
+/* Shows the last one as the eye sees it now. Returns whether there is one that is near enough. */
 bool scene_show_reference(struct scene *scene, const struct gl_place *place);
 /* At rest: draws the one that the next motion begins with, unless it did since the picture last
  * changed, so that the answer to a touch need not wait for a whole one. */

@@ -38,6 +38,8 @@ int __wrap_timerfd_settime(int fd, int flags, const struct itimerspec *to,
 			   struct itimerspec *before);
 void __real_gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 void __wrap_gl_place_bind(const struct gl_place *place, int width_px, int height_px);
+void __real_gl_target_bind(const struct gl_target *target);
+void __wrap_gl_target_bind(const struct gl_target *target);
 int __real_frame_draw(struct frame *frame);
 int __wrap_frame_draw(struct frame *frame);
 void __real_fingers_on_touch(void *data, const struct touch_event *event);
@@ -298,14 +300,28 @@ static bool nobody_sees_frame(void)
 	return true;
 }
 
+static void draw_corner_alone(void)
+{
+	glEnable(GL_SCISSOR_TEST);
+	glScissor(0, 0, 1, 1);
+}
+
 /* From here to the end of a frame everything is drawn to the panel. */
 void __wrap_gl_place_bind(const struct gl_place *place, int width_px, int height_px)
 {
 	__real_gl_place_bind(place, width_px, height_px);
-	if (!nobody_sees_frame())
-		return;
-	glEnable(GL_SCISSOR_TEST);
-	glScissor(0, 0, 1, 1);
+	if (nobody_sees_frame())
+		draw_corner_alone();
+}
+
+/* Pictures of a moving eye may be drawn aside first. What passes draw aside is needed. */
+void __wrap_gl_target_bind(const struct gl_target *target)
+{
+	const struct scene *scene = kiosk.releases.sessions.shown.exhibit.scene;
+
+	__real_gl_target_bind(target);
+	if (scene && target == &scene->accumulation.frame && nobody_sees_frame())
+		draw_corner_alone();
 }
 
 int __wrap_frame_draw(struct frame *of)

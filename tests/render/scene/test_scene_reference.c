@@ -72,25 +72,40 @@ static int pixels_changed(const uint8_t *a, const uint8_t *b, int by)
 	return count;
 }
 
+/* Goes on to the side until there is a picture to warp. Returns how far it has gone. */
+static float reach_first(void)
+{
+	float aside_m = 0;
+
+	for (int i = 0; !stage.scene->references.has_shown; i++) {
+		CHECK(i < 20);
+		aside_m += 0.025f;
+		draw_aside(aside_m, 0.2f, NULL);
+	}
+	return aside_m;
+}
+
 /* While the next one is drawn in slices, each frame shows the last one as the eye sees it. */
 static void a_warped_picture_is_that_of_the_eye(void **state)
 {
 	static uint8_t old[4 * PIXELS];
 	const struct scene_references *r = &stage.scene->references;
 	uint32_t changes = 0;
-	int shown = -1;
+	float aside_m;
+	int shown;
 
 	(void)state;
 	settle();
 	draw_aside(0, 1, NULL);
 	memcpy(old, stage.seen, sizeof(old));
 	CHECK(!r->has_shown);
+	aside_m = reach_first();
+	shown = r->shown;
 	for (int i = 1; i <= 48; i++) {
-		const float aside_m = 0.025f * (float)i;
-
+		aside_m += 0.025f;
 		draw_aside(aside_m, 0.2f, NULL);
 		CHECK(r->has_shown);
-		changes += shown >= 0 && r->shown != shown;
+		changes += r->shown != shown;
 		shown = r->shown;
 		if (i < 24)
 			continue;
@@ -127,7 +142,7 @@ static void a_resting_eye_keeps_a_picture_for_the_next_motion(void **state)
 	CHECK(!r->has_shown && !r->of[0].picture.framebuffer && !r->of[1].picture.framebuffer);
 }
 
-/* An eye that is suddenly elsewhere sees a picture of that place at once; so does one of another
+/* An eye that is suddenly elsewhere sees that place at once, drawn directly; so does one of another
  * release, in the middle of a picture. */
 static void a_jump_shows_nothing_of_the_old_place(void **state)
 {
@@ -135,15 +150,14 @@ static void a_jump_shows_nothing_of_the_old_place(void **state)
 
 	(void)state;
 	settle();
-	for (int i = 0; i < 3; i++)
-		draw_aside(0.01f * (float)i, 0.2f, NULL);
+	reach_first();
 	draw_aside(8, 0.2f, NULL);
-	CHECK(r->has_shown);
 	draw_aside(8, 1, NULL);
 	CHECK(difference(stage.before, stage.seen) < 250);
-	for (int i = 1; i <= 2; i++) /* one of them may be for depths of a face */
+	for (int i = 1; !r->is_begun; i++) { /* not in a frame for depths of a face */
+		CHECK(i < 20);
 		draw_aside(8 + 0.01f * (float)i, 0.2f, NULL);
-	CHECK(r->is_begun);
+	}
 	CHECK(scene_open(stage.scene, release->root, release->root_bytes) == 0);
 	CHECK(!r->has_shown && !r->is_begun);
 	settle();

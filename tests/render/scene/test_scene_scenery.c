@@ -505,6 +505,15 @@ static void draw_aside(float share)
 	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
 }
 
+/* The same until there is a picture to warp. */
+static void reach_first(void)
+{
+	for (int i = 0; !stage.scene->references.has_shown; i++) {
+		CHECK(i < 20);
+		draw_aside(0.2f);
+	}
+}
+
 /* The same as before, in pictures that are warped for the frames in between. */
 static void a_door_is_where_the_eye_sees_it_in_a_warped_picture(void **state)
 {
@@ -513,9 +522,9 @@ static void a_door_is_where_the_eye_sees_it_in_a_warped_picture(void **state)
 
 	(void)state;
 	settle("closed");
+	reach_first();
 	for (int i = 0; i < 40; i++) {
 		draw_aside(0.2f);
-		CHECK(r->has_shown);
 		moved = vec_most(moved, vec_distance(r->of[r->shown].view.eye_m, eye.eye_m));
 		CHECK(is_wood(1.5f, -6, 1.5f) && is_wood(2.7f, -6, 0.5f) &&
 		      !is_wood(3.4f, -6, 1.5f));
@@ -532,14 +541,15 @@ static void a_door_that_opens_is_not_warped(void **state)
 
 	(void)state;
 	settle("closed");
-	draw_aside(0.2f);
-	CHECK(r->has_shown && touch(1.5f, -6, 1.5f));
+	reach_first();
+	CHECK(touch(1.5f, -6, 1.5f));
 	do {
 		draw_aside(0.2f);
 		CHECK(frames++ < FRAMES_MAX);
-		CHECK(stage.scene->scenery.moves == !r->has_shown);
+		CHECK(!r->has_shown && !(stage.scene->scenery.moves && r->is_begun));
 	} while (stage.scene->scenery.moves);
 	CHECK(frames > 2);
+	reach_first();
 	CHECK(!is_wood(2.8f, -6, 0.3f) && is_wood(0, -4.5f, 1.5f));
 }
 
@@ -567,7 +577,9 @@ static void scenery_is_in_the_visibility_pass_of_a_picture(void **state)
 
 	(void)state;
 	settle("closed");
-	draw_aside(0.2f);
+	do
+		draw_aside(0.2f);
+	while (!stage.scene->references.is_read);
 	depth_m = place_in_pass(on_door_m, &x, &y);
 	CHECK(!visibility_at(pass, x, y, &point));
 	CHECK(fabsf(visibility_depth_m(pass, x, y) - depth_m) < 0.05f);
