@@ -109,7 +109,9 @@ int visibility_init(struct visibility *visibility)
 static const struct visibility_program *find_program(struct visibility *visibility, unsigned kind)
 {
 	struct visibility_program *p = &visibility->programs[kind];
-	return p->program || build(p, kind) == 0 ? p : NULL;
+	if (!p->program && !p->is_refused)
+		p->is_refused = build(p, kind) < 0;
+	return p->program ? p : NULL;
 }
 
 static const struct visibility_program *program_for(struct visibility *visibility)

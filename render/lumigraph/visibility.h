@@ -20,7 +20,8 @@ enum {
 struct visibility {
 	struct gl_target target;
 	struct visibility_program {
-		GLuint program; /* 0: not built yet */
+		GLuint program; /* 0: not built yet, or refused */
+		bool is_refused;
 		GLint right, up, forward, range, lattice, number, cut, model;
 	} programs[VISIBILITY_PROGRAMS];
 	const struct visibility_program *used;
