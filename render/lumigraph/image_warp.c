@@ -13,6 +13,8 @@ static const float ring = 0.5f;
 /* How far the eye may be from the reference's, as a share of what is nearest, and how far it may
  * have turned: the cosine of 18 degrees. */
 static const float reach_share = 1, reach_cosine = 0.95f;
+/* How much of the view the picture may leave bare, which its edge is smeared over. */
+static const float bare_most = 0.1f;
 /* Nearer than this share of the nearest depth a point counts as there: it is at the eye. */
 static const float least_share = 0.02f;
 
@@ -110,13 +112,6 @@ void image_warp_take_depths(struct image_warp_reference *reference,
 	}
 }
 
-bool image_warp_reaches(const struct image_warp_reference *reference, const struct view *view)
-{
-	return vec_dot(reference->view.forward, view->forward) >= reach_cosine &&
-	       vec_distance(reference->view.eye_m, view->eye_m) <=
-		       reach_share * reference->nearest_m;
-}
-
 /* ---- the mesh */
 
 /* Returns where a column or row of points is, -1..1 within the picture. */
@@ -134,6 +129,53 @@ static float share(float at)
 	return fminf(fmaxf((at + 1) / 2, 0), 1);
 }
 
+/* Writes where a point of the mesh is, relative to the eye; x and y are those of the picture, -1 to
+ * 1. Returns its depth in the view. */
+static float place_point(float to[3], const struct image_warp_reference *reference,
+			 const struct view *view, int i, int j)
+{
+	const struct view *from = &reference->view;
+	const float depth_m = reference->depth_m[j * IMAGE_WARP_COLUMNS + i];
+	const float x = depth_m * from->tan_x * across(i, IMAGE_WARP_ACROSS);
+	const float y = depth_m * from->tan_y * across(j, IMAGE_WARP_UP);
+	for (int k = 0; k < 3; k++)
+		to[k] = from->eye_m[k] - view->eye_m[k] + depth_m * from->forward[k] +
+			x * from->right[k] + y * from->up[k];
+	return fmaxf(vec_dot(to, view->forward), least_share * reference->nearest_m);
+}
+
+/* Returns the share of the view beyond a point of the picture's edge, along an axis of the view
+ * towards that edge. */
+static float beyond(const struct image_warp_reference *reference, const struct view *view, int i,
+		    int j, const float axis[3], float tangent)
+{
+	float to[3];
+	const float z = place_point(to, reference, view, i, j);
+	return share(-vec_dot(to, axis) / (z * tangent));
+}
+
+/* Returns about how much of the view the picture leaves bare: the sum of what each edge does. */
+static float find_bare(const struct image_warp_reference *reference, const struct view *view)
+{
+	const int right = IMAGE_WARP_COLUMNS - 2, top = IMAGE_WARP_ROWS - 2;
+	float sides = 0, ends = 0;
+	for (int j = 1; j <= top; j++)
+		sides += beyond(reference, view, 1, j, view->right, -view->tan_x) +
+			 beyond(reference, view, right, j, view->right, view->tan_x);
+	for (int i = 1; i <= right; i++)
+		ends += beyond(reference, view, i, 1, view->up, -view->tan_y) +
+			beyond(reference, view, i, top, view->up, view->tan_y);
+	return sides / (float)top + ends / (float)right;
+}
+
+bool image_warp_reaches(const struct image_warp_reference *reference, const struct view *view)
+{
+	return vec_dot(reference->view.forward, view->forward) >= reach_cosine &&
+	       vec_distance(reference->view.eye_m, view->eye_m) <=
+		       reach_share * reference->nearest_m &&
+	       find_bare(reference, view) <= bare_most;
+}
+
 /* Writes where a direction or a place relative to the eye is in clip space, before the division.
  * The matrix turns it as the panel is. */
 static void clip_place(float out[2], const struct view *view, const float to[3])
@@ -147,20 +189,15 @@ void image_warp_place(struct image_warp *warp, const struct image_warp_reference
 		      const struct view *view)
 {
 	const struct view *from = &reference->view;
-	const float least_m = least_share * reference->nearest_m;
-	float moved_m[3];
-	vec_sub(moved_m, from->eye_m, view->eye_m);
 	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
 		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
 			const int n = j * IMAGE_WARP_COLUMNS + i;
 			const float x = from->tan_x * across(i, IMAGE_WARP_ACROSS);
 			const float y = from->tan_y * across(j, IMAGE_WARP_UP);
 			float along[3], to[3], was[2], is[2];
-			for (int k = 0; k < 3; k++) {
+			for (int k = 0; k < 3; k++)
 				along[k] = from->forward[k] + x * from->right[k] + y * from->up[k];
-				to[k] = moved_m[k] + reference->depth_m[n] * along[k];
-			}
-			const float z = fmaxf(vec_dot(to, view->forward), least_m);
+			const float z = place_point(to, reference, view, i, j);
 			clip_place(was, from, along);
 			clip_place(is, view, to);
 			warp->point[n] = (struct image_warp_point){ .x = is[0] / z,

@@ -213,6 +213,25 @@ static void it_reaches_as_far_as_little_is_missing(void **state)
 	CHECK(!image_warp_reaches(&reference, &view));
 }
 
+/* Beside a wall that fills the picture, the eye that goes aside sees past its edge: by a tenth of
+ * the view after a seventh of the distance. */
+static void it_reaches_no_farther_than_its_edges(void **state)
+{
+	(void)state;
+	see(a_wall, 0);
+	const float wall_m = reference.nearest_m;
+	struct view view = view_from(0.13f * wall_m, 0, 0, 0);
+	CHECK(image_warp_reaches(&reference, &view));
+	view = view_from(0.17f * wall_m, 0, 0, 0);
+	CHECK(!image_warp_reaches(&reference, &view));
+	view = view_from(-0.17f * wall_m, 0, 0, 0);
+	CHECK(!image_warp_reaches(&reference, &view));
+	view = view_from(0, -0.2f * wall_m, 0, 0); /* back */
+	CHECK(!image_warp_reaches(&reference, &view));
+	view = view_from(0, 0.5f * wall_m, 0, 0);
+	CHECK(image_warp_reaches(&reference, &view));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -221,6 +240,7 @@ int main(void)
 		cmocka_unit_test(nothing_is_far_away_and_only_turns),
 		cmocka_unit_test(near_things_hide_far_ones_wherever_the_eye_goes),
 		cmocka_unit_test(it_reaches_as_far_as_little_is_missing),
+		cmocka_unit_test(it_reaches_no_farther_than_its_edges),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
