@@ -191,7 +191,7 @@ static struct shot *shoot(struct bench *bench, uint32_t leg, int64_t began_us,
 	if (shot->rests)
 		target_us = REFRESH_US;
 	stage->options.frame_us = (uint32_t)target_us;
-	scene_choose_layer(stage->scene, bench->layer);
+	scene_choose_layer(stage->scene, bench->layer); /* scenery may come at any time */
 	stage_frame(stage, camera, &frame);
 	shot->spent_ms = (double)stage->spent_us / 1000;
 	shot->wall_ms = (double)stage->wall_us / 1000;

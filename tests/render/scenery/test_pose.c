@@ -83,6 +83,27 @@ static void a_touch_on_the_way_turns_it_back(void **state)
 	pose_finish(&pose);
 }
 
+/* What does not turn back jumps, so there is one more picture to draw. */
+static void a_reset_is_drawn(void **state)
+{
+	struct little_scenery s;
+	struct pose pose;
+	float at[3];
+
+	(void)state;
+	little_scenery_init(&s);
+	s.motion.returns = false;
+	CHECK(pose_init(&pose, &s.scenery) == 0);
+	CHECK(pose_touch(&pose, DOOR));
+	run(&pose, 2100);
+	CHECK(!pose_moves(&pose));
+	pose_reset(&pose);
+	CHECK(pose_step(&pose, 16) && !pose_moves(&pose));
+	corner_of(&pose, at);
+	CHECK(is_near(at[0], 1));
+	pose_finish(&pose);
+}
+
 static void layers_share_the_pixels_while_they_dissolve(void **state)
 {
 	struct little_scenery s;
@@ -350,6 +371,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_door_opens_and_closes),
 		cmocka_unit_test(a_touch_on_the_way_turns_it_back),
+		cmocka_unit_test(a_reset_is_drawn),
 		cmocka_unit_test(layers_share_the_pixels_while_they_dissolve),
 		cmocka_unit_test(a_place_turns_and_scales_about_its_centre),
 		cmocka_unit_test(steps_and_single_keys_have_values),
