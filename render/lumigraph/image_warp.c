@@ -129,18 +129,22 @@ static float share(float at)
 	return fminf(fmaxf((at + 1) / 2, 0), 1);
 }
 
-/* Writes where a point of the mesh is, relative to the eye; x and y are those of the picture, -1 to
- * 1. Returns its depth in the view. */
-static float place_point(float to[3], const struct image_warp_reference *reference,
-			 const struct view *view, int i, int j)
+/* Writes the way of a point of the mesh from the reference's eye, per metre of depth. */
+static void find_way(float along[3], const struct view *from, int i, int j)
 {
-	const struct view *from = &reference->view;
-	const float depth_m = reference->depth_m[j * IMAGE_WARP_COLUMNS + i];
-	const float x = depth_m * from->tan_x * across(i, IMAGE_WARP_ACROSS);
-	const float y = depth_m * from->tan_y * across(j, IMAGE_WARP_UP);
+	const float x = from->tan_x * across(i, IMAGE_WARP_ACROSS);
+	const float y = from->tan_y * across(j, IMAGE_WARP_UP);
 	for (int k = 0; k < 3; k++)
-		to[k] = from->eye_m[k] - view->eye_m[k] + depth_m * from->forward[k] +
-			x * from->right[k] + y * from->up[k];
+		along[k] = from->forward[k] + x * from->right[k] + y * from->up[k];
+}
+
+/* Writes where a point of the mesh is, relative to the view's eye. Returns its depth in the view,
+ * never behind the eye. */
+static float place_point(float to[3], const struct image_warp_reference *reference,
+			 const struct view *view, const float along[3], int n)
+{
+	vec_sub(to, reference->view.eye_m, view->eye_m);
+	vec_add_scaled(to, to, reference->depth_m[n], along);
 	return fmaxf(vec_dot(to, view->forward), least_share * reference->nearest_m);
 }
 
@@ -149,8 +153,9 @@ static float place_point(float to[3], const struct image_warp_reference *referen
 static float beyond(const struct image_warp_reference *reference, const struct view *view, int i,
 		    int j, const float axis[3], float tangent)
 {
-	float to[3];
-	const float z = place_point(to, reference, view, i, j);
+	float along[3], to[3];
+	find_way(along, &reference->view, i, j);
+	const float z = place_point(to, reference, view, along, j * IMAGE_WARP_COLUMNS + i);
 	return share(-vec_dot(to, axis) / (z * tangent));
 }
 
@@ -192,12 +197,9 @@ void image_warp_place(struct image_warp *warp, const struct image_warp_reference
 	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
 		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
 			const int n = j * IMAGE_WARP_COLUMNS + i;
-			const float x = from->tan_x * across(i, IMAGE_WARP_ACROSS);
-			const float y = from->tan_y * across(j, IMAGE_WARP_UP);
 			float along[3], to[3], was[2], is[2];
-			for (int k = 0; k < 3; k++)
-				along[k] = from->forward[k] + x * from->right[k] + y * from->up[k];
-			const float z = place_point(to, reference, view, i, j);
+			find_way(along, from, i, j);
+			const float z = place_point(to, reference, view, along, n);
 			clip_place(was, from, along);
 			clip_place(is, view, to);
 			warp->point[n] = (struct image_warp_point){ .x = is[0] / z,

@@ -105,9 +105,11 @@ int visibility_init(struct visibility *visibility)
 	return 0;
 }
 
-/* Returns the program, built if it is not there, or NULL. */
-static const struct visibility_program *find_program(struct visibility *visibility, unsigned kind)
+/* Returns the program for pieces (0) or for what is beside them in the pass's view, built if it is
+ * not there, or NULL. */
+static const struct visibility_program *find_program(struct visibility *visibility, unsigned beside)
 {
+	const unsigned kind = beside | (view_is_cut(&visibility->view) ? VISIBILITY_CUT : 0);
 	struct visibility_program *p = &visibility->programs[kind];
 	if (!p->program && !p->is_refused)
 		p->is_refused = build(p, kind) < 0;
@@ -116,8 +118,7 @@ static const struct visibility_program *find_program(struct visibility *visibili
 
 static const struct visibility_program *program_for(struct visibility *visibility)
 {
-	const unsigned kind = view_is_cut(&visibility->view) ? VISIBILITY_CUT : 0;
-	const struct visibility_program *p = find_program(visibility, kind);
+	const struct visibility_program *p = find_program(visibility, 0);
 	/* without it, the part that is cut away still hides what is behind it */
 	return p ? p : &visibility->programs[0];
 }
@@ -198,8 +199,7 @@ void visibility_number(const struct visibility *visibility, uint32_t piece)
 
 bool visibility_beside(struct visibility *visibility, const float model[16])
 {
-	const unsigned cut = view_is_cut(&visibility->view) ? VISIBILITY_CUT : 0;
-	const struct visibility_program *p = find_program(visibility, VISIBILITY_BESIDE | cut);
+	const struct visibility_program *p = find_program(visibility, VISIBILITY_BESIDE);
 	if (!p)
 		return false;
 	if (p != visibility->used)

@@ -216,8 +216,8 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	}
 	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
-	bool counted = scene_is_warped(scene) ? scene_build_reference(scene)
-					      : scene_take_visibility(scene, moved);
+	bool counted = scene_uses_references(scene) ? scene_build_reference(scene)
+						    : scene_take_visibility(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->depth_is_stale = false;

@@ -81,8 +81,9 @@ struct scene_references {
 	struct scene_slice slice; /* of the picture */
 	/* How the eye moves, in metres and parts of a direction for each millisecond. */
 	float eye_speed[3], turn_speed[3];
-	uint32_t moving_frames;
-	float begun_ms, took_ms; /* since the coming one was begun; that of the last one */
+	uint32_t moving_frames; /* since it began to */
+	float begun_ms;         /* time since the coming one was begun */
+	float took_ms;          /* time from its begin to its end, of the last one */
 };
 
 /* A face whose depths are being drawn from the patches of scene.around. */

@@ -23,7 +23,8 @@ static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for
  * farther away than this share of what is nearest: eyes stop and turn round. */
 static const float lead_most_ms = 300, lead_most_share = 0.4f;
-/* What is drawn of it beside a frame that none can be warped for: few frames are. */
+/* Where no reference is near, at least this share of the next one is drawn beside each direct
+ * picture, so that there are few of those. */
 static const float direct_share = 0.34f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;
@@ -31,7 +32,7 @@ static const float speed_ms = 60;
  * middle of that time. */
 static const float turn_lead = 1.5f;
 
-bool scene_is_warped(const struct scene *scene)
+bool scene_uses_references(const struct scene *scene)
 {
 	return scene->used.share < 1 && scene->has_hierarchy && scene->backdrop.share <= 0 &&
 	       scene_scenery_is_still(scene) && scene->stream.growth.triangle_count == 0;
@@ -175,8 +176,10 @@ static void read_depths(struct scene *scene)
 {
 	visibility_resume(&scene->visibility, &scene->root);
 	scene_draw_scenery_depths(scene);
-	if (visibility_end(&scene->visibility) < 0)
+	if (visibility_end(&scene->visibility) < 0) {
 		log_warn("render", "a picture will be warped with the depths of another one");
+		scene->references.is_counted = true; /* there is nothing to count */
+	}
 	image_warp_take_depths(coming(scene), &scene->visibility);
 	scene->references.is_read = true;
 }
@@ -273,7 +276,7 @@ void scene_keep_reference(struct scene *scene)
 	scene->used = scene->effort;
 	r->is_kept = true;
 	r->is_begun = false;
-	if (scene_is_warped(scene) && begin(scene, 0)) {
+	if (scene_uses_references(scene) && begin(scene, 0)) {
 		go_on(scene, INFINITY);
 		image_warp_let_go(coming(scene));
 	}
@@ -288,7 +291,7 @@ bool scene_show_reference(struct scene *scene, const struct gl_place *place)
 	struct scene_references *r = &scene->references;
 	const struct view *view = &scene->view;
 	struct view small;
-	if (!scene_is_warped(scene) || !is_near(scene))
+	if (!scene_uses_references(scene) || !is_near(scene))
 		return false;
 	enlargement_view(&small, view, scene->used.scale);
 	if (enlargement_begin(&scene->enlargement, &small) < 0)

@@ -6,9 +6,9 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Returns whether this frame shows a reference picture. Not where scenery moves, nor with what the
- * visibility pass does not know: backdrop, streaming mesh. */
-bool scene_is_warped(const struct scene *scene);
+/* Returns whether frames are made of reference pictures now, where one is near. Not where scenery
+ * moves, nor with what the visibility pass does not know: backdrop, streaming mesh. */
+bool scene_uses_references(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
 /* Draws a share of the next reference picture, a larger one where none can be shown. Every fifth
