@@ -550,7 +550,7 @@ int surface_choose(const struct surface_frame *frame, const struct blend blend[P
 	int faces = 0;
 	if (!dissolve_draws(range))
 		return -1;
-	for (int i = 0; i < PLAN_ENTRIES && frame->tiles; i++)
+	for (int i = 0; i < PLAN_ENTRIES && frame->tiles && faces < frame->faces; i++)
 		faces += slot_of(frame, &blend[i]) >= 0;
 	return dissolve_is_whole(range) ? faces : faces + PLAN_ENTRIES + 1;
 }
@@ -623,17 +623,31 @@ static void tell(struct told *told, int at, const struct surface_frame *frame,
 	told->base[at][2] = aim.units - 64 * told->base[at][1];
 }
 
+/* Returns which of the blends is to be told next, of those that can be drawn; -1: none is left. */
+static int heaviest(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],
+		    const bool is_told[PLAN_ENTRIES])
+{
+	int at = -1;
+	for (int i = 0; i < PLAN_ENTRIES; i++)
+		if (!is_told[i] && slot_of(frame, &blend[i]) >= 0 &&
+		    (at < 0 || blend[i].weight > blend[at].weight))
+			at = i;
+	return at;
+}
+
 void surface_blend(const struct surface *surface, const struct surface_frame *frame, int program,
 		   const struct blend blend[PLAN_ENTRIES], const struct piece *piece, float error_m)
 {
 	const struct surface_program *p = surface->used;
 	const int faces = surface_faces(program);
 	struct told told = { 0 };
-	int at = 0;
-	for (int i = 0; i < PLAN_ENTRIES; i++) {
-		int slot = slot_of(frame, &blend[i]);
-		if (slot >= 0)
-			tell(&told, at++, frame, &blend[i], slot, piece);
+	bool is_told[PLAN_ENTRIES] = { false };
+	for (int at = 0; at < faces; at++) {
+		const int i = heaviest(frame, blend, is_told);
+		if (i < 0)
+			break;
+		is_told[i] = true;
+		tell(&told, at, frame, &blend[i], slot_of(frame, &blend[i]), piece);
 	}
 	glUniform4fv(p->face, 5 * faces, told.face[0]);
 	glUniform4fv(p->place, faces, told.place[0]);

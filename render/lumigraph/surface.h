@@ -61,6 +61,7 @@ struct surface_frame {
 	const struct tiles *tiles; /* NULL: only the patches' own colours */
 	const struct depth *depth;
 	const struct repository *repository;
+	int faces;        /* that a piece blends at most: those of the largest weight */
 	struct rake rake; /* the raking light; the section plane is in the view */
 	struct surface_fog fog;
 	/* faces have the weight of their blend, whatever they see (the eight corners) */

@@ -244,7 +244,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	struct view small;
 	if (!scene_gives_way(scene))
 		return false;
-	enlargement_view(&small, view, scene->used.scale);
+	enlargement_view(&small, view, scene->used.scale * scene_direct_scale(scene));
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
 		return false;
 	scene_begin_picture(scene);
@@ -344,8 +344,11 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	section_cut(&scene->tools.section, view.eye_m, view.cut);
 	bool moved = view_changed(scene, &view) || scene->tools_moved;
 	const float passed = passed_ms(scene);
+	scene->still_eye_frames = moved ? 0 : scene->still_eye_frames + 1;
+	scene->eye_moves = scene->still_eye_frames <= STILL_FRAMES;
 	if (scene_step_scenery(scene, passed)) {
-		scene_forget_references(scene);
+		if (!scene->eye_moves)
+			scene_forget_references(scene);
 		moved = true;
 	}
 	scene->tools_moved = false;

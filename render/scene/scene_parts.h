@@ -197,7 +197,8 @@ struct scene {
 
 	struct scene_effort effort; /* while the eye moves */
 	struct scene_effort used;   /* in this frame */
-	uint32_t still_frames;      /* since the eye last moved */
+	uint32_t still_frames;      /* since the eye or scenery last moved */
+	uint32_t still_eye_frames;  /* since the eye did */
 	struct scene_tools tools;
 	bool tools_moved; /* changed since the last frame */
 	/* The current frame. */
@@ -219,6 +220,7 @@ struct scene {
 	int64_t visibility_us;  /* time of the last visibility pass; 0: none yet */
 	int64_t season_us;      /* when the current season of the tiles began */
 	bool was_moving;
+	bool eye_moves; /* or did in the frame before */
 	float visibility_eye_m[3];
 	float visibility_forward[3];
 	uint64_t visibility_cut;

@@ -173,6 +173,9 @@ struct surface_frame scene_surface_frame(const struct scene *scene, const struct
 		.tiles = images ? &scene->tiles : NULL,
 		.depth = &scene->depth,
 		.repository = &scene->repository,
+		/* What is drawn over several frames is seen when it is whole, so nothing of it has
+		 * to fade: too many faces would only make it late. */
+		.faces = scene->used.share < 1 ? (int)scene->used.faces : PLAN_ENTRIES,
 		.rake = scene->tools.rake,
 		.fog = scene_fog(scene),
 		.even = scene->options.mode == SCENE_CORNERS,

@@ -84,6 +84,10 @@ static uint64_t geometry_budget(const struct scene *scene)
 	return all - (pictures < all / 2 ? pictures : all / 2);
 }
 
+/* Groups replace each other so many times as fast where a picture takes several frames: it shows
+ * few steps of that, and costs what both groups cost. */
+static const float hurry = 4;
+
 void scene_update_cut(struct scene *scene, float passed_ms)
 {
 	struct cut_options options = cut_options_of(scene);
@@ -93,7 +97,8 @@ void scene_update_cut(struct scene *scene, float passed_ms)
 	geometry_evict(geometry, &scene->cut, geometry_budget(scene));
 	cut_update(&scene->cut, &scene->view, geometry->loaded, &options);
 	scene->cut_signature = geometry->changes;
-	dissolve_step(&scene->dissolve, geometry->loaded, passed_ms);
+	dissolve_step(&scene->dissolve, geometry->loaded,
+		      scene->used.share < 1 ? hurry * passed_ms : passed_ms);
 }
 
 void scene_desire(struct scene *scene)

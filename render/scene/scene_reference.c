@@ -25,7 +25,10 @@ static const float wider = 1.06f;
 static const float lead_most_ms = 300, lead_most_share = 0.4f;
 /* Where no reference is near, at least this share of the next one is drawn beside each direct
  * picture, so that there are few of those. */
-static const float direct_share = 0.34f;
+static const float direct_share = 0.25f;
+/* That one is smaller than references by this scale: it is for an eye that is too fast to see
+ * details, and at once. */
+static const float direct_scale = 0.5f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;
 /* A turn uncovers the edge of a picture as long as it is shown, so its direction is that of the
@@ -35,7 +38,8 @@ static const float turn_lead = 1.5f;
 bool scene_uses_references(const struct scene *scene)
 {
 	return scene->used.share < 1 && scene->has_hierarchy && scene->backdrop.share <= 0 &&
-	       scene_scenery_is_still(scene) && scene->stream.growth.triangle_count == 0;
+	       (scene->eye_moves || scene_scenery_is_still(scene)) &&
+	       scene->stream.growth.triangle_count == 0;
 }
 
 void scene_forget_references(struct scene *scene)
@@ -66,6 +70,11 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 		r->turn_speed[k] += newest * (turned - r->turn_speed[k]);
 	}
 	r->begun_ms += passed_ms;
+}
+
+float scene_direct_scale(const struct scene *scene)
+{
+	return scene_uses_references(scene) ? direct_scale : 1;
 }
 
 /* ---- the view of the next one */

@@ -6,8 +6,9 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Returns whether frames are made of reference pictures now, where one is near. Not where scenery
- * moves, nor with what the visibility pass does not know: backdrop, streaming mesh. */
+/* Returns whether frames are made of reference pictures now, where one is near. Not with
+ * what the visibility pass does not know: backdrop, streaming mesh. Nor where scenery moves before
+ * an eye that rests; beside one that moves it is as it was when the last reference was drawn. */
 bool scene_uses_references(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
@@ -17,6 +18,9 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 bool scene_build_reference(struct scene *scene);
 /* Shows the last one as the eye sees it now. Returns whether there is one that is near enough. */
 bool scene_show_reference(struct scene *scene, const struct gl_place *place);
+/* Returns how small pictures are that are drawn where none is near enough, as a share of the scale
+ * of the effort. */
+float scene_direct_scale(const struct scene *scene);
 /* At rest: draws the one that the next motion begins with, unless it did since the picture last
  * changed, so that the answer to a touch need not wait for a whole one. */
 void scene_keep_reference(struct scene *scene);

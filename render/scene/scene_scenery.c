@@ -59,7 +59,7 @@ bool scene_scenery_is_still(const struct scene *scene)
 {
 	const struct scene_scenery *own = &scene->scenery;
 
-	return !is_shown(scene) || (own->is_ready && !own->lacks && !own->moves);
+	return !is_shown(scene) || !own->is_ready || (!own->lacks && !own->moves);
 }
 
 struct surface_fog scene_fog(const struct scene *scene)

@@ -36,19 +36,26 @@ static void settle(void)
 	fail_msg("not settled");
 }
 
-/* Draws one frame from an eye that has gone aside, at half the scale. */
-static void draw_aside(float aside_m, float share, const struct scene_mark *mark)
+static void spend(float share, uint32_t faces)
 {
 	struct scene_effort effort = scene_effort_full;
-	struct camera camera = usual_camera;
 
 	effort.scale = 0.5f;
 	effort.share = share;
+	effort.faces = faces;
+	scene_spend(stage.scene, &effort);
+}
+
+/* Draws one frame from an eye that has gone aside, at half the scale. */
+static void draw_aside(float aside_m, float share, const struct scene_mark *mark)
+{
+	struct camera camera = usual_camera;
+
+	spend(share, PLAN_ENTRIES);
 	for (int k = 0; k < 2; k++) {
 		camera.eye_m[k] += 0.7f * aside_m;
 		camera.target_m[k] += 0.1f * aside_m;
 	}
-	scene_spend(stage.scene, &effort);
 	draw_marked_stage(&stage, &camera, mark);
 }
 
@@ -146,14 +153,18 @@ static void a_resting_eye_keeps_a_picture_for_the_next_motion(void **state)
  * release, in the middle of a picture. */
 static void a_jump_shows_nothing_of_the_old_place(void **state)
 {
+	static uint8_t old[4 * PIXELS];
 	const struct scene_references *r = &stage.scene->references;
 
 	(void)state;
 	settle();
 	reach_first();
+	memcpy(old, stage.seen, sizeof(old));
 	draw_aside(8, 0.2f, NULL);
+	assert_int_equal(stage.scene->enlargement.small.width_px, WIDTH / 4);
 	draw_aside(8, 1, NULL);
-	CHECK(difference(stage.before, stage.seen) < 250);
+	assert_int_equal(stage.scene->enlargement.small.width_px, WIDTH / 2);
+	CHECK(difference(stage.before, stage.seen) < difference(old, stage.seen) / 6);
 	for (int i = 1; !r->is_begun; i++) { /* not in a frame for depths of a face */
 		CHECK(i < 20);
 		draw_aside(8 + 0.01f * (float)i, 0.2f, NULL);
@@ -161,6 +172,48 @@ static void a_jump_shows_nothing_of_the_old_place(void **state)
 	CHECK(scene_open(stage.scene, release->root, release->root_bytes) == 0);
 	CHECK(!r->has_shown && !r->is_begun);
 	settle();
+}
+
+/* Returns how many faces the piece blends that has most. */
+static int most_blended(void)
+{
+	const struct scene *scene = stage.scene;
+	int most = 0;
+
+	for (uint32_t i = 0; i < scene->visible_count; i++) {
+		const struct visible_piece *v = &scene->visible[i];
+		const struct blend *blend =
+			scene->geometry.patches[v->patch].pieces[v->piece].blend;
+		int faces = 0;
+
+		for (int k = 0; k < PLAN_ENTRIES; k++)
+			faces += blend[k].held && blend[k].weight > 0;
+		most = faces > most ? faces : most;
+	}
+	return most;
+}
+
+/* Faces that go fade where each frame is a new picture. One that takes several frames must not wait
+ * for that. */
+static void a_picture_for_several_frames_has_no_faces_that_fade(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	struct camera camera = usual_camera;
+	uint32_t with_faces = 0;
+
+	(void)state;
+	settle();
+	camera.eye_m[0] += 0.01f;
+	spend(0.2f, 1);
+	draw_stage(&stage, &camera);
+	CHECK(r->is_begun);
+	CHECK(most_blended() > 1);
+	for (int i = 0; i < SURFACE_PROGRAMS; i++) {
+		if (surface_faces(i) > 1)
+			assert_int_equal(r->slice.with[i], 0);
+		with_faces += surface_faces(i) == 1 ? r->slice.with[i] : 0;
+	}
+	CHECK(with_faces > 0);
 }
 
 static void a_warped_picture_has_the_mark(void **state)
@@ -187,6 +240,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_warped_picture_is_that_of_the_eye, raise, strike),
 		cmocka_unit_test_setup_teardown(a_resting_eye_keeps_a_picture_for_the_next_motion,
+						raise, strike),
+		cmocka_unit_test_setup_teardown(a_picture_for_several_frames_has_no_faces_that_fade,
 						raise, strike),
 		cmocka_unit_test_setup_teardown(a_jump_shows_nothing_of_the_old_place, raise,
 						strike),

@@ -492,17 +492,22 @@ static void a_frame_builds_one_program_at_most(void **state)
 
 /* ---- where frames take too long */
 
-/* Draws a frame from an eye that goes on to the side. */
-static void draw_aside(float share)
+static void draw_with_share(float share)
 {
 	struct scene_effort effort = scene_effort_full;
 
 	effort.scale = 0.5f;
 	effort.share = share;
-	eye.eye_m[0] += 0.02f;
 	scene_spend(stage.scene, &effort);
 	draw();
 	CHECK(gl_target_read(&stage.target, stage.seen) == 0);
+}
+
+/* From an eye that goes on to the side. */
+static void draw_aside(float share)
+{
+	eye.eye_m[0] += 0.02f;
+	draw_with_share(share);
 }
 
 /* The same until there is a picture to warp. */
@@ -534,7 +539,7 @@ static void a_door_is_where_the_eye_sees_it_in_a_warped_picture(void **state)
 }
 
 /* Until it has opened, whole pictures are drawn, and none from before is shown after it. */
-static void a_door_that_opens_is_not_warped(void **state)
+static void a_door_that_opens_before_an_eye_that_rests_is_not_warped(void **state)
 {
 	const struct scene_references *r = &stage.scene->references;
 	int frames = 0;
@@ -542,14 +547,38 @@ static void a_door_that_opens_is_not_warped(void **state)
 	(void)state;
 	settle("closed");
 	reach_first();
+	draw_with_share(0.2f);
 	CHECK(touch(1.5f, -6, 1.5f));
 	do {
-		draw_aside(0.2f);
+		draw_with_share(0.2f);
 		CHECK(frames++ < FRAMES_MAX);
 		CHECK(!r->has_shown && !(stage.scene->scenery.moves && r->is_begun));
 	} while (stage.scene->scenery.moves);
 	CHECK(frames > 2);
 	reach_first();
+	CHECK(!is_wood(2.8f, -6, 0.3f) && is_wood(0, -4.5f, 1.5f));
+}
+
+/* It is in each picture as it was when that was drawn. */
+static void a_door_that_opens_beside_an_eye_that_moves_is_warped(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	int shown;
+	int pictures = 0;
+
+	(void)state;
+	settle("closed");
+	reach_first();
+	CHECK(touch(1.5f, -6, 1.5f));
+	for (int frames = 0; stage.scene->scenery.moves || frames == 0; frames++) {
+		shown = r->shown;
+		draw_aside(0.2f);
+		CHECK(r->has_shown && frames < FRAMES_MAX);
+		pictures += r->shown != shown;
+	}
+	CHECK(pictures > 0);
+	for (shown = r->shown; r->shown == shown || r->is_begun;)
+		draw_aside(0.2f);
 	CHECK(!is_wood(2.8f, -6, 0.3f) && is_wood(0, -4.5f, 1.5f));
 }
 
@@ -606,8 +635,12 @@ int main(void)
 						strike_stage),
 		cmocka_unit_test_setup_teardown(a_door_is_where_the_eye_sees_it_in_a_warped_picture,
 						raise_stage, strike_stage),
-		cmocka_unit_test_setup_teardown(a_door_that_opens_is_not_warped, raise_stage,
-						strike_stage),
+		cmocka_unit_test_setup_teardown(
+			a_door_that_opens_before_an_eye_that_rests_is_not_warped, raise_stage,
+			strike_stage),
+		cmocka_unit_test_setup_teardown(
+			a_door_that_opens_beside_an_eye_that_moves_is_warped, raise_stage,
+			strike_stage),
 		cmocka_unit_test_setup_teardown(scenery_is_in_the_visibility_pass_of_a_picture,
 						raise_stage, strike_stage),
 	};
