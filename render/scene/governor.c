@@ -24,7 +24,9 @@ static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
 static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
 /* Below 0 a picture is drawn over several frames: from this share of it in each just there, where
  * showing the last one costs no more than is gained, to the least. */
-static const float level_least = -0.4f, share_most = 0.67f, share_least = 0.16f;
+static const float level_share = -0.4f, share_most = 0.67f, share_least = 0.16f;
+/* Below that such pictures become smaller, to this part of the least scale of whole ones. */
+static const float level_least = -0.7f, scale_least = 0.7f;
 /* Where the parts of the effort begin to give way, in the order of what a picture loses for the
  * time that is gained (docs/figures.md, Levels of the governor): the scale first. */
 static const float level_faces = 0.4f, level_triangles = 0.2f, level_budget = 0.1f;
@@ -149,7 +151,7 @@ static float share_at(float level)
 {
 	if (level >= 0)
 		return 1;
-	return share_most * powf(share_least / share_most, level / level_least);
+	return share_most * powf(share_least / share_most, fminf(level / level_share, 1));
 }
 
 /* Returns the level at which a frame takes that part of one at full effort. */
@@ -158,8 +160,8 @@ static float level_for(float part)
 	if (part >= cost_least)
 		return fminf((part - cost_least) / (1 - cost_least), 1);
 	const float level =
-		level_least * logf(part / cost_least / share_most) / logf(share_least / share_most);
-	return fminf(fmaxf(level, level_least), 0);
+		level_share * logf(part / cost_least / share_most) / logf(share_least / share_most);
+	return fminf(fmaxf(level, level_share), 0);
 }
 
 void governor_expect(struct governor *governor, int64_t spent_us, uint32_t triangles)
@@ -176,7 +178,10 @@ void governor_expect(struct governor *governor, int64_t spent_us, uint32_t trian
 
 struct scene_effort governor_effort(const struct governor *governor)
 {
-	const float level = governor->level, least = governor->bounds.scale_least;
+	const float level = governor->level;
+	const float small =
+		scale_least + (1 - scale_least) * between(level, level_least, level_share);
+	const float least = small * governor->bounds.scale_least;
 	const float faces = between(level, level_triangles, level_faces);
 	const float triangles = between(level, level_budget, level_triangles);
 	return (struct scene_effort){

@@ -244,7 +244,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	struct view small;
 	if (!scene_gives_way(scene))
 		return false;
-	enlargement_view(&small, view, scene->used.scale * scene_direct_scale(scene));
+	enlargement_view(&small, view, scene_direct_scale(scene));
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
 		return false;
 	scene_begin_picture(scene);

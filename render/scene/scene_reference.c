@@ -26,9 +26,9 @@ static const float lead_most_ms = 300, lead_most_share = 0.4f;
 /* Where no reference is near, at least this share of the next one is drawn beside each direct
  * picture, so that there are few of those. */
 static const float direct_share = 0.25f;
-/* That one is smaller than references by this scale: it is for an eye that is too fast to see
- * details, and at once. */
-static const float direct_scale = 0.5f;
+/* That one is smaller than references, because it is for an eye that is too fast to see details,
+ * and at once; but as much of the panel's sides as this at least. */
+static const float direct_part = 0.5f, direct_least = 0.25f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;
 /* A turn uncovers the edge of a picture as long as it is shown, so its direction is that of the
@@ -74,7 +74,8 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 
 float scene_direct_scale(const struct scene *scene)
 {
-	return scene_uses_references(scene) ? direct_scale : 1;
+	const float scale = scene->used.scale;
+	return scene_uses_references(scene) ? fmaxf(direct_part * scale, direct_least) : scale;
 }
 
 /* ---- the view of the next one */

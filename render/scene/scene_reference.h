@@ -18,8 +18,7 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 bool scene_build_reference(struct scene *scene);
 /* Shows the last one as the eye sees it now. Returns whether there is one that is near enough. */
 bool scene_show_reference(struct scene *scene, const struct gl_place *place);
-/* Returns how small pictures are that are drawn where none is near enough, as a share of the scale
- * of the effort. */
+/* Returns the scale of pictures that are drawn directly. */
 float scene_direct_scale(const struct scene *scene);
 /* At rest: draws the one that the next motion begins with, unless it did since the picture last
  * changed, so that the answer to a touch need not wait for a whole one. */
