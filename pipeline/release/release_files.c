@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/clock.h"
 #include "base/log.h"
@@ -216,19 +217,53 @@ static int prepare_timestamp(struct pending *out, const char *release,
 	return rc;
 }
 
+/* Reads the file that is to be replaced. Returns 1, or 0 if there is none. */
+static int read_before(struct buffer *out, const char *path)
+{
+	const int rc = buffer_read_file(out, path);
+
+	if (rc < 0 && rc != -ENOENT)
+		log_error("pipeline", "%s: %s", path, strerror(-rc));
+	return rc == 0 ? 1 : rc == -ENOENT ? 0 : rc;
+}
+
+/* Puts the file back that was replaced, or removes the new one if there was none. */
+static void take_back(const char *release, const struct pending *file, bool was,
+		      struct bytes before)
+{
+	const int rc = was                      ? release_files_put(release, "release.json", before)
+		       : unlink(file->path) < 0 ? -errno
+						: 0;
+
+	if (rc < 0)
+		log_error("pipeline",
+			  "%s: %s; timestamp.json names another one until the next "
+			  "publication",
+			  file->path, strerror(-rc));
+}
+
 /* Replaces release.json and the timestamp that names it. Both are complete before, so neither a
- * full disk nor, but for the moment between two renames, a kill leaves one without the other. */
+ * full disk nor, but for the moment between two renames, a kill leaves one without the other; nor
+ * does a rename that fails. */
 static int replace_both(const char *release, const struct publisher_keys *keys, uint64_t sequence,
 			struct bytes release_file, int64_t timestamp_life_s)
 {
 	struct pending first, second = { .fd = -1 };
-	int rc = prepare(&first, release, "release.json", release_file);
+	struct buffer before;
+	int was = 0, rc = prepare(&first, release, "release.json", release_file);
 
+	buffer_init(&before, METADATA_FILE_BYTES_MAX);
 	if (rc == 0)
 		rc = prepare_timestamp(&second, release, keys, sequence, release_file,
 				       timestamp_life_s);
-	rc = replace(&first, rc);
+	if (rc == 0)
+		rc = was = read_before(&before, first.path);
+	rc = replace(&first, rc < 0 ? rc : 0);
+	const bool is_new = rc == 0;
 	rc = replace(&second, rc);
+	if (is_new && rc < 0)
+		take_back(release, &first, was > 0, buffer_bytes(&before));
+	buffer_finish(&before);
 	return rc < 0 ? rc : bytes_sync_folder_of(second.path);
 }
 

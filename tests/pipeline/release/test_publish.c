@@ -25,6 +25,20 @@ int __wrap_fsync(int fd)
 	return __real_fsync(fd);
 }
 
+static int renames_left = -1; /* before one of them fails; -1: none does */
+
+int __real_rename(const char *from, const char *to);
+int __wrap_rename(const char *from, const char *to);
+
+int __wrap_rename(const char *from, const char *to)
+{
+	if (renames_left >= 0 && renames_left-- == 0) {
+		errno = EIO;
+		return -1;
+	}
+	return __real_rename(from, to);
+}
+
 static int verify_at(int64_t now_s)
 {
 	const struct release_reader_options options = { .place = tiny.release };
@@ -191,6 +205,27 @@ static void a_full_disk_leaves_one_release_or_the_other(void **state)
 	CHECK(failures > 4 && verified.release.sequence > 2);
 }
 
+static void a_rename_that_fails_leaves_one_release_or_the_other(void **state)
+{
+	const struct publish_target target = tiny_target(&tiny);
+	struct publish_report undone;
+	int rc = -1, failures = 0;
+
+	(void)state;
+	tiny_publish(&tiny, NULL);
+	tiny_parts(&tiny, "High tower");
+	tiny_publish(&tiny, NULL);
+	for (int n = 0; rc < 0; n++) {
+		renames_left = n;
+		rc = publish_again(&undone, &target, 0);
+		renames_left = -1;
+		CHECK(rc == 0 || rc == -EIO);
+		CHECK(verify() == 0 && verified.release.sequence == (rc == 0 ? 3 : 2));
+		failures += rc < 0;
+	}
+	CHECK(failures >= 3); /* history, release, timestamp */
+}
+
 static void expiry_is_judged_by_the_clock_that_is_given(void **state)
 {
 	int64_t now = clock_wall_s();
@@ -332,6 +367,8 @@ int main(void)
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(a_full_disk_leaves_one_release_or_the_other, set_up,
 						tear_down),
+		cmocka_unit_test_setup_teardown(a_rename_that_fails_leaves_one_release_or_the_other,
+						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(expiry_is_judged_by_the_clock_that_is_given, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(foreign_keys_never_overwrite_a_release, set_up,
