@@ -1,9 +1,6 @@
 # Part of the guest's init: starts the kiosk and changes its panel (gopura.case= of the command line).
 preload=
 case $(sed -n 's/.*gopura\.case=\([a-z]*\).*/\1/p' /proc/cmdline) in
-visit)
-	self_test >/dev/console
-	;;
 unplugged)
 	# Without a panel at the start; then it comes, goes and comes again.
 	preload=/lost_gl.so
@@ -30,6 +27,7 @@ unplugged)
 	) >/dev/console &
 	;;
 closed)
+	self_test >/dev/console
 	# Open on a day that is neither today nor next to it, in whatever time zone.
 	set -- --hours "$(date -d "@$(($(date +%s) + 259200))" +%a) 09:00-10:00" --shift
 	;;

@@ -109,6 +109,6 @@ class Machine:
 class Kiosk(Machine):
     """Nothing but the kiosk in an initramfs (make-initramfs.sh), which ends with it."""
 
-    def __init__(self, kernel, initramfs, work, case="visit"):
+    def __init__(self, kernel, initramfs, work, case):
         super().__init__(work, case, ["-no-reboot", "-kernel", kernel, "-initrd", initramfs,
                                       "-append", f"console=ttyS0 quiet panic=1 gopura.case={case}"])
