@@ -231,10 +231,12 @@ static int read_before(struct buffer *out, const char *path)
 static void take_back(const char *release, const struct pending *file, bool was,
 		      struct bytes before)
 {
-	const int rc = was                      ? release_files_put(release, "release.json", before)
-		       : unlink(file->path) < 0 ? -errno
-						: 0;
+	int rc = 0;
 
+	if (was)
+		rc = release_files_put(release, "release.json", before);
+	else if (unlink(file->path) < 0)
+		rc = -errno;
 	if (rc < 0)
 		log_error("pipeline",
 			  "%s: %s; timestamp.json names another one until the next "

@@ -12,8 +12,9 @@
 #include "render/scene/scene.h"
 
 struct governor_bounds {
-	float scale_least;   /* least scale of the picture while the eye moves, 0 to 1; 1: nothing
-				is governed */
+	/* Least scale of pictures that are drawn in one frame while the eye moves, 0 to 1;
+	 * reference pictures may become smaller (docs/picture.md). 1: nothing is governed. */
+	float scale_least;
 	uint32_t refresh_us; /* the panel's period; 0: 60 Hz */
 };
 

@@ -18,8 +18,8 @@ uint64_t scene_scenery_bytes(const struct scene *scene);
 bool scene_scenery_waits(const struct scene *scene);
 /* Draws it over the patches. What has just come is made ready first, and appears then. */
 void scene_draw_scenery(struct scene *scene, const struct surface_frame *frame);
-/* Returns whether a picture of this frame would have it as it stays until it is touched: it is
- * ready, and nothing of it moves. True without scenery. */
+/* Returns whether a picture of this frame would have it as it stays until it is touched: nothing of
+ * it moves. True before it appears, and without scenery. */
 bool scene_scenery_is_still(const struct scene *scene);
 /* Draws its depths into the visibility pass that was begun. */
 void scene_draw_scenery_depths(struct scene *scene);
