@@ -74,6 +74,7 @@ static void draw_scene(struct frame *frame)
 		const struct scene_effort effort = governor_effort(&frame->governor);
 
 		scene_spend(shown->scene, &effort);
+		scene_heed(shown->scene, o->touch_waits, o->data);
 		scene_draw(shown->scene, &o->eye->camera,
 			   o->words ? marked_part(frame, &mark) : NULL, &shown->frame);
 	}
@@ -151,7 +152,7 @@ static void expect(struct frame *frame)
 {
 	const struct scene_frame *shown = &shown_by(frame)->frame;
 
-	if (!shown->moved && shown->moving && shown->patches > 0)
+	if (!shown->moved && shown->moving && !shown->sliced && shown->patches > 0)
 		governor_expect(&frame->governor, frame->spent_us, shown->triangles);
 }
 

@@ -19,6 +19,9 @@ struct frame_options {
 	bool views;         /* the camera is set from outside, for pictures of views */
 	bool words;         /* draw the overlay */
 	float scale_least;  /* bound of the governor */
+	/* Returns whether a touch waits, for which a picture at rest is left for later. */
+	bool (*touch_waits)(void *data);
+	void *data;
 	/* What it draws and works with; borrowed. */
 	struct display *display;
 	struct quads *quads;

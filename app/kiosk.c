@@ -258,6 +258,13 @@ static void connect_visit(struct kiosk *kiosk)
 					    .data = kiosk });
 }
 
+static bool touch_waits_for(void *data)
+{
+	const struct kiosk *kiosk = data;
+
+	return touch_waits(kiosk->touch);
+}
+
 static void connect_panel(struct kiosk *kiosk)
 {
 	const struct options *options = &kiosk->options;
@@ -286,6 +293,8 @@ static void connect_panel(struct kiosk *kiosk)
 					  .views = options->views_path,
 					  .words = options->capture_overlay || !options->views_path,
 					  .scale_least = kiosk->profile.scale_least,
+					  .touch_waits = touch_waits_for,
+					  .data = kiosk,
 					  .display = kiosk->display,
 					  .quads = kiosk->quads,
 					  .viewport = &kiosk->viewport,

@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -343,6 +344,13 @@ void touch_destroy(struct touch *touch)
 int touch_fd(const struct touch *touch)
 {
 	return touch->epoll_fd;
+}
+
+bool touch_waits(const struct touch *touch)
+{
+	struct pollfd ready = { .fd = touch ? touch->epoll_fd : -1, .events = POLLIN };
+
+	return poll(&ready, 1, 0) > 0;
 }
 
 int touch_dispatch(struct touch *touch)

@@ -40,6 +40,8 @@ void touch_destroy(struct touch *touch);
 /* Returns a descriptor, borrowed, that is readable when touch_dispatch has work (an epoll
  * descriptor of its own). */
 int touch_fd(const struct touch *touch);
+/* Returns whether touch_dispatch has work; false for NULL. */
+bool touch_waits(const struct touch *touch);
 /* Calls event for everything that happened. Errors of a device are logged and close that device
  * only; negative errno only where waiting itself fails. */
 must_check int touch_dispatch(struct touch *touch);

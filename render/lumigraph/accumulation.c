@@ -94,6 +94,11 @@ void accumulation_add(struct accumulation *accumulation, const struct gl_place *
 		gl_copy_draw(accumulation->program, accumulation->frame.colour);
 		glDisable(GL_BLEND);
 	}
+	accumulation_show_sum(accumulation, place);
+}
+
+void accumulation_show_sum(const struct accumulation *accumulation, const struct gl_place *place)
+{
 	gl_place_bind(place, accumulation->sum.width_px, accumulation->sum.height_px);
 	gl_copy_draw(accumulation->program, accumulation->sum.colour);
 }

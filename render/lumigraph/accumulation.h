@@ -37,6 +37,8 @@ void accumulation_offset(const struct accumulation *accumulation, bool changed, 
  * the scene differs from that of the last frame. */
 void accumulation_add(struct accumulation *accumulation, const struct gl_place *place,
 		      bool changed);
+/* Shows the sum at the given place as it is. */
+void accumulation_show_sum(const struct accumulation *accumulation, const struct gl_place *place);
 /* Shows accumulation->frame alone at the given place. */
 void accumulation_show_frame(const struct accumulation *accumulation, const struct gl_place *place);
 /* Returns whether enough frames of the same scene were added. */

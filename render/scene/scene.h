@@ -85,6 +85,7 @@ bool scene_awaits_image(const struct scene *scene);
 struct scene_frame {
 	bool moved;   /* the view differs from that of the last frame */
 	bool moving;  /* a fade is in progress or an upload waits: draw again soon */
+	bool sliced;  /* the picture at rest took several frames: none tells its time */
 	bool settled; /* nothing is wanted, decoding or fading, and accumulation is complete */
 	uint32_t triangles, patches, tiles_uploaded, depth_faces_drawn;
 	/* of the streaming mesh, which is shown before there are patches; 0: not shown */
@@ -106,6 +107,10 @@ struct scene_mark {
 void scene_draw(struct scene *scene, const struct camera *camera, const struct scene_mark *mark,
 		struct scene_frame *out);
 
+/* Where a picture at rest takes long, waits(data) is asked between parts of it whether something
+ * else is to be done first. If so, scene_draw shows what was seen last, and the next call goes on.
+ * NULL: nothing ever is. data is borrowed. */
+void scene_heed(struct scene *scene, bool (*waits)(void *data), void *data);
 /* Sets the effort from the next frame on; initially it is full. *effort is copied. */
 void scene_spend(struct scene *scene, const struct scene_effort *effort);
 

@@ -15,6 +15,7 @@
 #include "render/scene/scene_plan.h"
 #include "render/scene/scene_reference.h"
 #include "render/scene/scene_scenery.h"
+#include "render/scene/scene_still.h"
 #include "render/scene/scene_stream.h"
 #include "render/scene/scene_visibility.h"
 #include "render/scene/scene_wants.h"
@@ -24,8 +25,9 @@ enum {
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
 	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
-	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
-	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
+	PASSED_MOST_MS = 100,
+	SHARE_PX_MAX = 320, /* width of the picture from which image_share is counted */
+	STILL_FRAMES = 1,   /* drawn like those before, since a slow finger does not move in each */
 };
 
 /* ---- depth of faces */
@@ -197,7 +199,9 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 /* Returns the time since the last frame. A long pause must not make fades jump. */
 static float passed_ms(const struct scene *scene)
 {
-	return scene->frame_us ? fminf((float)(clock_now_us() - scene->frame_us) / 1000, 100) : 0;
+	return scene->frame_us
+		       ? fminf((float)(clock_now_us() - scene->frame_us) / 1000, PASSED_MOST_MS)
+		       : 0;
 }
 
 static void prepare(struct scene *scene, bool moved, float passed, struct scene_frame *out)
@@ -276,38 +280,22 @@ static void show_moving(struct scene *scene, const struct gl_place *place)
 	outline_draw(&scene->outline, place, view->width_px, view->height_px);
 }
 
-static void draw_jittered(struct scene *scene, bool changed)
-{
-	const struct gl_target *frame = &scene->accumulation.frame;
-	const struct gl_place place = { .framebuffer = frame->framebuffer };
-	struct view jittered = scene->view;
-	float x, y;
-	accumulation_offset(&scene->accumulation, changed, &x, &y);
-	view_jitter(&jittered, x, y);
-	gl_target_bind(frame);
-	scene_begin_picture(scene);
-	scene_draw_picture(scene, &jittered, PICTURE_ASIDE);
-	scene_draw_mask(scene, &jittered, frame);
-	outline_draw(&scene->outline, &place, frame->width_px, frame->height_px);
-}
-
 /* Draws to the given place: at rest through accumulation, while moving directly. */
 static void show(struct scene *scene, const struct gl_place *place, bool moved, bool changed)
 {
 	const struct view *view = &scene->view;
 	if (moved)
-		accumulation_break(&scene->accumulation);
+		scene_still_forget(scene);
 	if (scene_show_reference(scene, place) || show_enlarged(scene, place))
 		return;
-	const bool draws = changed || !accumulation_is_done(&scene->accumulation);
+	const bool draws = changed || scene_still_is_begun(scene) ||
+			   !accumulation_is_done(&scene->accumulation);
 	if (moved || accumulation_prepare(&scene->accumulation, view->width_px, view->height_px,
 					  draws) < 0) {
 		show_moving(scene, place);
 		return;
 	}
-	if (draws)
-		draw_jittered(scene, changed);
-	accumulation_add(&scene->accumulation, place, changed);
+	scene_still_show(scene, place, draws, changed);
 }
 
 void scene_spend(struct scene *scene, const struct scene_effort *effort)
@@ -358,23 +346,34 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->camera = *camera;
 	scene->view = view;
 	scene->has_view = true;
-	prepare(scene, moved, passed, out);
-	if (scene_scenery(scene))
-		scene_update_around(scene, moved);
+	/* what a picture shows may not change while parts of it are drawn */
+	out->sliced = scene_still_is_begun(scene) && !moved;
+	scene->still.passed_ms += passed;
+	if (out->sliced) {
+		scene->frame_us = clock_now_us();
+	} else {
+		scene->still.is_begun = false;
+		prepare(scene, moved, fminf(scene->still.passed_ms, PASSED_MOST_MS), out);
+		scene->still.passed_ms = 0;
+		if (scene_scenery(scene))
+			scene_update_around(scene, moved);
+	}
 	if (scene_note_mark(scene, mark))
-		/* it answers a touch, so it must appear at once */
-		accumulation_break(&scene->accumulation);
+		/* it answers a touch, so it must not blend in slowly */
+		scene_still_renew(scene);
 	bool changed = is_busy(scene);
 	show(scene, &place, moved, changed);
+	out->sliced |= scene_still_is_begun(scene);
 	out->triangles = scene->cut.triangle_count;
 	out->patches = scene->cut.patch_count;
 	out->stream_triangles = scene->stream.growth.triangle_count;
 	scene_list_wants(scene);
 	/* Wanted objects may never arrive, so memory is freed without waiting for them. */
-	bool still = !moved && !changed && accumulation_is_done(&scene->accumulation);
+	bool still = !moved && !changed && !scene_still_is_begun(scene) &&
+		     accumulation_is_done(&scene->accumulation);
 	out->settled = still && scene->want_count == 0;
 	out->moved = moved;
-	out->moving = is_busy(scene) || moved || !accumulation_is_done(&scene->accumulation);
+	out->moving = !still || is_busy(scene);
 	if (!out->settled)
 		scene->image_share = -1;
 	else if (scene->image_share < 0)

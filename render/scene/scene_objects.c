@@ -176,6 +176,7 @@ int scene_open(struct scene *scene, struct hash root, uint32_t root_bytes)
 	tiles_clear(&scene->tiles);
 	depth_clear(&scene->depth, 1);
 	accumulation_break(&scene->accumulation);
+	scene->still.is_begun = scene->still.sum_is_seen = false;
 	scene->opened_ms = clock_now_ms();
 	scene->visibility_us = 0;
 	scene->root_hash = root;

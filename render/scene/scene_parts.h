@@ -86,6 +86,18 @@ struct scene_references {
 	float took_ms;          /* time from its begin to its end, of the last one */
 };
 
+/* The picture at rest that is drawn, and the sum of those before (scene_still.h). */
+struct scene_still {
+	bool is_begun;
+	bool changed;     /* the scene is not as it was in the picture before */
+	bool sum_is_seen; /* the sum is of what the eye sees, or saw before a part was marked */
+	struct view view; /* shifted by a part of a pixel */
+	struct scene_slice slice;
+	float passed_ms;           /* since the scene was last prepared */
+	bool (*waits)(void *data); /* as scene_heed has it */
+	void *data;                /* borrowed */
+};
+
 /* A face whose depths are being drawn from the patches of scene.around. */
 struct depth_task {
 	bool is_begun; /* and not complete */
@@ -157,6 +169,7 @@ struct scene {
 	struct accumulation accumulation;
 	struct enlargement enlargement;
 	struct visibility visibility;
+	struct scene_still still;
 	struct scene_references references;
 
 	bool programs_wait;     /* new ones for the next picture, pieces have fewer faces */

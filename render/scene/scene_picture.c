@@ -11,8 +11,8 @@
 
 enum { NEW_BUDGET_US = 30000 }; /* for the first triangles with a program */
 
-/* What a triangle and a seen pixel take of a picture, in triangles of the visibility pass, by two
- * cores without a GPU. */
+/* What a triangle and a seen pixel of a face take of a picture, in triangles of the visibility
+ * pass, by two cores without a GPU. */
 static const float triangle_cost = 0.5f, fragment_cost = 0.15f;
 
 /* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
@@ -64,13 +64,15 @@ static int choose_program(const struct scene *scene, const struct surface_frame 
 			      v->range);
 }
 
-float scene_piece_cost(const struct scene *scene, const struct visible_piece *v, float picture_px)
+float scene_piece_cost(const struct scene *scene, const struct visible_piece *v, int faces,
+		       float picture_px)
 {
 	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 	const struct piece_state *state = &patch->pieces[v->piece];
 	const float seen_px = state->counted ? state->seen_px : v->pixels;
 	return triangle_cost * (float)patch->content.bvh.pieces[v->piece].triangle_count +
-	       fragment_cost * seen_px * picture_px / scene->view.picture_px;
+	       fragment_cost * (float)(faces > 1 ? faces : 1) * seen_px * picture_px /
+		       scene->view.picture_px;
 }
 
 /* Draws pieces of the slice's program until the cost is reached. Returns that of those it drew. */
@@ -87,7 +89,8 @@ static float draw_with(struct scene *scene, const struct surface_frame *frame,
 		if (v->program != slice->program || !patch->pieces)
 			continue;
 		draw_piece(scene, frame, v, &run);
-		drawn += scene_piece_cost(scene, v, frame->view->picture_px);
+		drawn += scene_piece_cost(scene, v, surface_faces(slice->program),
+					  frame->view->picture_px);
 	}
 	end_run(&run);
 	return drawn;
@@ -184,8 +187,7 @@ struct surface_frame scene_surface_frame(const struct scene *scene, const struct
 	};
 }
 
-/* Draws what a picture has besides pieces. */
-static void draw_beside(struct scene *scene, const struct surface_frame *frame)
+void scene_draw_beside(struct scene *scene, const struct surface_frame *frame)
 {
 	scene_draw_stream(scene, frame);
 	if (!frame->shares)
@@ -200,5 +202,5 @@ void scene_draw_picture(struct scene *scene, const struct view *view, enum pictu
 	scene_begin_slices(scene, &frame, scene->visible,
 			   scene->visible_count + scene->leaving_count, &slice);
 	scene_draw_slice(scene, &frame, &slice, INFINITY);
-	draw_beside(scene, &frame);
+	scene_draw_beside(scene, &frame);
 }

@@ -129,7 +129,7 @@ static void sum_costs(struct scene *scene, float picture_px)
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
 			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
-		cost += (float)piece->triangle_count + scene_piece_cost(scene, v, picture_px);
+		cost += (float)piece->triangle_count + scene_piece_cost(scene, v, 1, picture_px);
 	}
 	scene->references.cost = cost;
 }

@@ -216,6 +216,58 @@ static void a_picture_for_several_frames_has_no_faces_that_fade(void **state)
 	CHECK(with_faces > 0);
 }
 
+static uint32_t looks, touches; /* how often was asked; of these, how often one waited */
+
+static bool touch_waits(void *data)
+{
+	(void)data;
+	looks++;
+	touches += looks % 2;
+	return looks % 2;
+}
+
+/* Settles an eye that has just moved. */
+static void settle_again(float share)
+{
+	reach_first();
+	spend(share, 1);
+	settle();
+}
+
+/* At rest pictures are drawn in parts, between which a touch is answered; they are those of a board
+ * that draws them whole. */
+static void a_picture_at_rest_is_left_for_a_touch(void **state)
+{
+	static uint8_t whole[4 * PIXELS];
+	struct camera camera = usual_camera;
+	int begun = 0;
+
+	(void)state;
+	settle();
+	settle_again(1);
+	memcpy(whole, stage.seen, sizeof(whole));
+	scene_heed(stage.scene, touch_waits, NULL);
+	looks = touches = 0;
+	settle_again(0.005f);
+	CHECK(touches > 2 * ACCUMULATION_FRAMES);
+	CHECK(difference(whole, stage.seen) < 1);
+	/* what is seen stays, until an eye that moves sees it at once */
+	camera.eye_m[0] += 0.05f;
+	for (int i = 0; i < 8; i++) {
+		draw_stage(&stage, &camera);
+		begun += stage.scene->still.is_begun;
+		CHECK(!stage.scene->still.is_begun || i < 3 ||
+		      difference(stage.before, stage.seen) == 0);
+	}
+	CHECK(begun > 3);
+	while (!stage.scene->still.is_begun)
+		draw_stage(&stage, &camera);
+	camera.eye_m[0] += 0.05f;
+	draw_stage(&stage, &camera);
+	CHECK(stage.frame.moved && !stage.scene->still.is_begun);
+	CHECK(difference(stage.before, stage.seen) > 0);
+}
+
 static void a_warped_picture_has_the_mark(void **state)
 {
 	static const struct scene_mark pillar = { .region = { .kind = REGION_BOX,
@@ -243,6 +295,8 @@ int main(void)
 						raise, strike),
 		cmocka_unit_test_setup_teardown(a_picture_for_several_frames_has_no_faces_that_fade,
 						raise, strike),
+		cmocka_unit_test_setup_teardown(a_picture_at_rest_is_left_for_a_touch, raise,
+						strike),
 		cmocka_unit_test_setup_teardown(a_jump_shows_nothing_of_the_old_place, raise,
 						strike),
 		cmocka_unit_test_setup_teardown(a_warped_picture_has_the_mark, raise, strike),
