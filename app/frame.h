@@ -21,7 +21,7 @@ struct frame_options {
 	float scale_least;  /* bound of the governor */
 	/* Returns whether a touch waits, for which a picture at rest is left for later. */
 	bool (*touch_waits)(void *data);
-	void *data;
+	void *data; /* borrowed */
 	/* What it draws and works with; borrowed. */
 	struct display *display;
 	struct quads *quads;

@@ -623,14 +623,12 @@ static void tell(struct told *told, int at, const struct surface_frame *frame,
 	told->base[at][2] = aim.units - 64 * told->base[at][1];
 }
 
-/* Returns which of the blends is to be told next, of those that can be drawn; -1: none is left. */
-static int heaviest(const struct surface_frame *frame, const struct blend blend[PLAN_ENTRIES],
-		    const bool is_told[PLAN_ENTRIES])
+/* Returns the heaviest of the blends that have a slot, or -1. */
+static int heaviest(const struct blend blend[PLAN_ENTRIES], const int slot[PLAN_ENTRIES])
 {
 	int at = -1;
 	for (int i = 0; i < PLAN_ENTRIES; i++)
-		if (!is_told[i] && slot_of(frame, &blend[i]) >= 0 &&
-		    (at < 0 || blend[i].weight > blend[at].weight))
+		if (slot[i] >= 0 && (at < 0 || blend[i].weight > blend[at].weight))
 			at = i;
 	return at;
 }
@@ -641,13 +639,15 @@ void surface_blend(const struct surface *surface, const struct surface_frame *fr
 	const struct surface_program *p = surface->used;
 	const int faces = surface_faces(program);
 	struct told told = { 0 };
-	bool is_told[PLAN_ENTRIES] = { false };
+	int slot[PLAN_ENTRIES];
+	for (int i = 0; i < PLAN_ENTRIES; i++)
+		slot[i] = slot_of(frame, &blend[i]);
 	for (int at = 0; at < faces; at++) {
-		const int i = heaviest(frame, blend, is_told);
+		const int i = heaviest(blend, slot);
 		if (i < 0)
 			break;
-		is_told[i] = true;
-		tell(&told, at, frame, &blend[i], slot_of(frame, &blend[i]), piece);
+		tell(&told, at, frame, &blend[i], slot[i], piece);
+		slot[i] = -1;
 	}
 	glUniform4fv(p->face, 5 * faces, told.face[0]);
 	glUniform4fv(p->place, faces, told.place[0]);

@@ -24,10 +24,10 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
-	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
-	PASSED_MOST_MS = 100,
-	SHARE_PX_MAX = 320, /* width of the picture from which image_share is counted */
-	STILL_FRAMES = 1,   /* drawn like those before, since a slow finger does not move in each */
+	SEASON_US = 1000000,  /* longest season of the tiles while the eye moves */
+	PASSED_MOST_MS = 100, /* a long pause must not make fades jump */
+	SHARE_PX_MAX = 320,   /* width of the picture from which image_share is counted */
+	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
 /* ---- depth of faces */
@@ -196,7 +196,7 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 	scene->season_us = now_us;
 }
 
-/* Returns the time since the last frame. A long pause must not make fades jump. */
+/* Returns the time since the last frame. */
 static float passed_ms(const struct scene *scene)
 {
 	return scene->frame_us
@@ -352,7 +352,6 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	if (out->sliced) {
 		scene->frame_us = clock_now_us();
 	} else {
-		scene->still.is_begun = false;
 		prepare(scene, moved, fminf(scene->still.passed_ms, PASSED_MOST_MS), out);
 		scene->still.passed_ms = 0;
 		if (scene_scenery(scene))

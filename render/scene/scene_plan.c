@@ -84,8 +84,8 @@ static uint64_t geometry_budget(const struct scene *scene)
 	return all - (pictures < all / 2 ? pictures : all / 2);
 }
 
-/* Groups replace each other so many times as fast where a picture takes several frames: it shows
- * few steps of that, and costs what both groups cost. */
+/* Where a picture takes several frames, groups replace each other so many times as fast: few steps
+ * of it would be seen, and until it is over both are drawn. */
 static const float hurry = 4;
 
 void scene_update_cut(struct scene *scene, float passed_ms)

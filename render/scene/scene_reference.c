@@ -26,8 +26,8 @@ static const float lead_most_ms = 300, lead_most_share = 0.4f;
 /* Where no reference is near, at least this share of the next one is drawn beside each direct
  * picture, so that there are few of those. */
 static const float direct_share = 0.25f;
-/* That one is smaller than references, because it is for an eye that is too fast to see details,
- * and at once; but as much of the panel's sides as this at least. */
+/* The direct picture has this part of the scale of references, because it is for an eye that is too
+ * fast to see details; but this scale at least. */
 static const float direct_part = 0.5f, direct_least = 0.25f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;

@@ -6,9 +6,9 @@
 
 #include "render/scene/scene_parts.h"
 
-/* Returns whether frames are made of reference pictures now, where one is near. Not with
- * what the visibility pass does not know: backdrop, streaming mesh. Nor where scenery moves before
- * an eye that rests; beside one that moves it is as it was when the last reference was drawn. */
+/* Returns whether frames are made of reference pictures now, where one is near. Not with what the
+ * visibility pass does not know: backdrop, streaming mesh. Nor while scenery moves and the eye
+ * rests; while both move, scenery is shown as it was when the last reference was drawn. */
 bool scene_uses_references(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
