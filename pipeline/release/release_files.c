@@ -217,23 +217,23 @@ static int prepare_timestamp(struct pending *out, const char *release,
 	return rc;
 }
 
-/* Reads the file that is to be replaced. Returns 1, or 0 if there is none. */
+/* Reads the file that is to be replaced; nothing if there is none. */
 static int read_before(struct buffer *out, const char *path)
 {
 	const int rc = buffer_read_file(out, path);
 
-	if (rc < 0 && rc != -ENOENT)
-		log_error("pipeline", "%s: %s", path, strerror(-rc));
-	return rc == 0 ? 1 : rc == -ENOENT ? 0 : rc;
+	if (rc == 0 || rc == -ENOENT)
+		return 0;
+	log_error("pipeline", "%s: %s", path, strerror(-rc));
+	return rc;
 }
 
 /* Puts the file back that was replaced, or removes the new one if there was none. */
-static void take_back(const char *release, const struct pending *file, bool was,
-		      struct bytes before)
+static void take_back(const char *release, const struct pending *file, struct bytes before)
 {
 	int rc = 0;
 
-	if (was)
+	if (before.size > 0)
 		rc = release_files_put(release, "release.json", before);
 	else if (unlink(file->path) < 0)
 		rc = -errno;
@@ -252,19 +252,19 @@ static int replace_both(const char *release, const struct publisher_keys *keys, 
 {
 	struct pending first, second = { .fd = -1 };
 	struct buffer before;
-	int was = 0, rc = prepare(&first, release, "release.json", release_file);
+	int rc = prepare(&first, release, "release.json", release_file);
 
 	buffer_init(&before, METADATA_FILE_BYTES_MAX);
 	if (rc == 0)
 		rc = prepare_timestamp(&second, release, keys, sequence, release_file,
 				       timestamp_life_s);
 	if (rc == 0)
-		rc = was = read_before(&before, first.path);
-	rc = replace(&first, rc < 0 ? rc : 0);
+		rc = read_before(&before, first.path);
+	rc = replace(&first, rc);
 	const bool is_new = rc == 0;
 	rc = replace(&second, rc);
 	if (is_new && rc < 0)
-		take_back(release, &first, was > 0, buffer_bytes(&before));
+		take_back(release, &first, buffer_bytes(&before));
 	buffer_finish(&before);
 	return rc < 0 ? rc : bytes_sync_folder_of(second.path);
 }
