@@ -113,6 +113,7 @@ static void plays_through_one_fd(void **state)
 		struct pollfd wait = { .fd = touch_fd(touch), .events = POLLIN };
 
 		CHECK(poll(&wait, 1, 5000) == 1); /* else it would never have come */
+		CHECK(touch_waits(touch));
 		CHECK(touch_dispatch(touch) == 0);
 	}
 	CHECK(played.count == 3 && played.events[2].phase == TOUCH_UP);
@@ -138,7 +139,7 @@ static void waits_for_devices_that_may_come(void **state)
 	CHECK(mkdtemp(folder));
 	CHECK(touch_create(&touch, &options) == 0);
 	wait.fd = touch_fd(touch);
-	CHECK(poll(&wait, 1, 0) == 0);
+	CHECK(poll(&wait, 1, 0) == 0 && !touch_waits(touch) && !touch_waits(NULL));
 	snprintf(path, sizeof(path), "%s/event3", folder);
 	fd = open(path, O_CREAT | O_WRONLY, 0600);
 	CHECK(fd >= 0);

@@ -1,6 +1,6 @@
-"""plug.py KERNEL INITRAMFS WORK: shows the safe page on a panel while a kiosk waits for its end. Then one is off until a touch
-wakes it, and another touch opens a card. Then the kiosk starts without a panel,
-which is plugged in, out and in again, and at last the GPU is reset. A process exits only to fit the first panel, and for the GPU."""
+"""plug.py KERNEL INITRAMFS WORK: shows the safe page on a panel while a kiosk waits for its end. Then the panel is off
+outside its hours until a touch wakes it, and another touch opens a card. Then the kiosk starts without a panel, which is plugged in,
+out and in again, and at last the GPU is reset. A process exits only to fit the first panel, and for the GPU."""
 import os
 import sys
 import time
