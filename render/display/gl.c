@@ -344,12 +344,30 @@ static void add_depth(struct gl_target *out)
 	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, out->depth);
 }
 
+static int add_depths(struct gl_target *out)
+{
+	const struct gl_texture_options depths = { .width_px = out->width_px,
+						   .height_px = out->height_px,
+						   .format = GL_DEPTH_COMPONENT,
+						   .type = GL_UNSIGNED_INT,
+						   .filter = GL_NEAREST,
+						   .large = true };
+	int rc = gl_texture_create(&out->depths, &depths);
+
+	if (rc == 0)
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+				       out->depths, 0);
+	return rc;
+}
+
 GLenum gl_picture_format(void)
 {
 	return gl_has_extension("GL_EXT_texture_format_BGRA8888") ? GL_BGRA_EXT : GL_RGBA;
 }
 
-static int create_target(struct gl_target *out, int width_px, int height_px, bool has_depth)
+enum kind { FLAT, USUAL, DEEP };
+
+static int create_target(struct gl_target *out, int width_px, int height_px, enum kind kind)
 {
 	const struct gl_texture_options colour = { .width_px = width_px,
 						   .height_px = height_px,
@@ -365,9 +383,12 @@ static int create_target(struct gl_target *out, int width_px, int height_px, boo
 	glGenFramebuffers(1, &out->framebuffer);
 	gl_target_bind(out);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out->colour, 0);
-	if (has_depth)
+	if (kind == USUAL)
 		add_depth(out);
-	rc = gl_check("making a framebuffer");
+	if (kind == DEEP)
+		rc = add_depths(out);
+	if (rc == 0)
+		rc = gl_check("making a framebuffer");
 	if (rc == 0 && glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
 		log_error("render", "the driver cannot create a framebuffer of %d x %d", width_px,
 			  height_px);
@@ -382,12 +403,17 @@ fail:
 
 int gl_target_create(struct gl_target *out, int width_px, int height_px)
 {
-	return create_target(out, width_px, height_px, true);
+	return create_target(out, width_px, height_px, USUAL);
 }
 
 int gl_target_create_flat(struct gl_target *out, int width_px, int height_px)
 {
-	return create_target(out, width_px, height_px, false);
+	return create_target(out, width_px, height_px, FLAT);
+}
+
+int gl_target_create_deep(struct gl_target *out, int width_px, int height_px)
+{
+	return create_target(out, width_px, height_px, DEEP);
 }
 
 void gl_target_smooth(const struct gl_target *target)
@@ -407,6 +433,8 @@ void gl_target_destroy(struct gl_target *target)
 		glDeleteRenderbuffers(1, &target->depth);
 	if (target->colour)
 		glDeleteTextures(1, &target->colour);
+	if (target->depths)
+		glDeleteTextures(1, &target->depths);
 	*target = (struct gl_target){ 0 };
 }
 

@@ -87,7 +87,8 @@ GLenum gl_picture_format(void);
 /* A render target: a texture of gl_picture_format and a depth buffer (24 bits where the driver has
  * them). */
 struct gl_target {
-	GLuint framebuffer, colour, depth;
+	GLuint framebuffer, colour, depth; /* depth: a renderbuffer */
+	GLuint depths;                     /* instead of it, a texture of them */
 	int width_px, height_px;
 	int depth_bits;
 };
@@ -106,6 +107,8 @@ void gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 must_check int gl_target_create(struct gl_target *out, int width_px, int height_px);
 /* The same without a depth buffer. */
 must_check int gl_target_create_flat(struct gl_target *out, int width_px, int height_px);
+/* The same with its depths in a texture; needs GL_OES_depth_texture. */
+must_check int gl_target_create_deep(struct gl_target *out, int width_px, int height_px);
 /* Has the target looked up with bilinear filtering from now on; a new one is with the nearest
  * pixel. */
 void gl_target_smooth(const struct gl_target *target);

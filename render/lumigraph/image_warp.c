@@ -1,7 +1,9 @@
 /* Finds the depths of the grid, places and orders its mesh on the processor, and draws it. */
 #include "render/lumigraph/image_warp.h"
 
+#include <errno.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "geometry/vec.h"
@@ -10,11 +12,12 @@
 static const float sky_m = 1e6f;
 /* The ring of cells reaches out by so much of half the picture. */
 static const float ring = 0.5f;
-/* How far the eye may be from the reference's, as a share of what is nearest, and how far it may
- * have turned: the cosine of 18 degrees. */
-static const float reach_share = 1, reach_cosine = 0.95f;
+/* How far the eye may have turned: 18 degrees. It may be as far away as what is nearest. */
+static const float reach_angle = 0.314f;
 /* How much of the view the picture may leave bare, which its edge is smeared over. */
 static const float bare_most = 0.1f;
+/* A depth from this share of the far limit on is nothing. */
+static const float far_share = 0.99f;
 /* Nearer than this share of the nearest depth a point counts as there: it is at the eye. */
 static const float least_share = 0.02f;
 
@@ -30,6 +33,49 @@ static const char image_warp_fragment[] = "uniform FINE sampler2D u_picture;\n"
 					  "void main() {\n"
 					  "	gl_FragColor = texture2D(u_picture, v_at);\n"
 					  "}\n";
+
+/* Panels may be turned: where the view's axes are in the picture. */
+static const char depth_vertex[] = "attribute vec2 a_position;\n"
+				   "uniform vec4 u_axes;\n"
+				   "varying vec2 v_at;\n"
+				   "void main() {\n"
+				   "	v_at = 0.5 * (a_position.x * u_axes.xy +\n"
+				   "		      a_position.y * u_axes.zw) + 0.5;\n"
+				   "	gl_Position = vec4(a_position, 0.0, 1.0);\n"
+				   "}\n";
+
+/* Three digits in base 255. 1 has none; what is drawn is nearer. */
+static const char depth_fragment[] =
+	"precision highp float;\n"
+	"uniform highp sampler2D u_depths;\n"
+	"varying vec2 v_at;\n"
+	"void main() {\n"
+	"	float depth = min(texture2D(u_depths, v_at).r, 0.9999999);\n"
+	"	vec3 digits = fract(depth * vec3(1.0, 255.0, 65025.0));\n"
+	"	gl_FragColor = vec4(digits - vec3(digits.yz / 255.0, 0.0), 1.0);\n"
+	"}\n";
+
+static int build_depths(struct image_warp *warp)
+{
+	const struct gl_program_source source = {
+		.name = "depths of a picture",
+		.vertex = (const char *const[]){ depth_vertex, NULL },
+		.fragment = (const char *const[]){ depth_fragment, NULL },
+		.attributes = gl_square_attributes,
+	};
+	int rc = gl_program_build(&warp->depth_program, &source);
+	if (rc < 0)
+		return rc;
+	glUseProgram(warp->depth_program);
+	glUniform1i(glGetUniformLocation(warp->depth_program, "u_depths"), 0);
+	return gl_target_create_flat(&warp->depths, IMAGE_WARP_STEP * IMAGE_WARP_ACROSS,
+				     IMAGE_WARP_STEP * IMAGE_WARP_UP);
+}
+
+bool image_warp_is_supported(void)
+{
+	return gl_has_extension("GL_OES_depth_texture") && gl_has_highp();
+}
 
 static int build(struct image_warp *warp)
 {
@@ -52,6 +98,8 @@ int image_warp_begin(struct image_warp *warp, struct image_warp_reference *refer
 {
 	struct gl_target *picture = &reference->picture;
 	int rc = warp->program ? 0 : build(warp);
+	if (rc == 0 && !warp->depths.framebuffer)
+		rc = build_depths(warp);
 	if (rc < 0)
 		return rc;
 	if (picture->framebuffer && picture->width_px == width_px &&
@@ -60,7 +108,7 @@ int image_warp_begin(struct image_warp *warp, struct image_warp_reference *refer
 		return 0;
 	}
 	gl_target_destroy(picture);
-	rc = gl_target_create(picture, width_px, height_px);
+	rc = gl_target_create_deep(picture, width_px, height_px);
 	if (rc == 0)
 		gl_target_smooth(picture);
 	return rc;
@@ -75,44 +123,13 @@ void image_warp_finish(struct image_warp *warp)
 {
 	if (warp->program)
 		glDeleteProgram(warp->program);
-	warp->program = 0;
+	if (warp->depth_program)
+		glDeleteProgram(warp->depth_program);
+	gl_target_destroy(&warp->depths);
+	warp->program = warp->depth_program = 0;
 }
 
-/* ---- depths */
-
-/* Returns the least depth around a pixel corner. A cell that shows anything near is near as a
- * whole, so that only what is behind gets stretched. */
-static float depth_around(const struct visibility *visibility, int x, int y)
-{
-	float nearest = sky_m;
-	for (int j = y - IMAGE_WARP_STEP; j < y + IMAGE_WARP_STEP; j++)
-		for (int i = x - IMAGE_WARP_STEP; i < x + IMAGE_WARP_STEP; i++)
-			if (i >= 0 && j >= 0 && i < VISIBILITY_WIDTH && j < VISIBILITY_HEIGHT)
-				nearest = fminf(nearest, visibility_depth_m(visibility, i, j));
-	return nearest;
-}
-
-static int within(int value, int most)
-{
-	return value < 0 ? 0 : value > most ? most : value;
-}
-
-void image_warp_take_depths(struct image_warp_reference *reference,
-			    const struct visibility *visibility)
-{
-	reference->nearest_m = sky_m;
-	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
-		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
-			const float depth_m = depth_around(
-				visibility, IMAGE_WARP_STEP * within(i - 1, IMAGE_WARP_ACROSS),
-				IMAGE_WARP_STEP * within(j - 1, IMAGE_WARP_UP));
-			reference->depth_m[j * IMAGE_WARP_COLUMNS + i] = depth_m;
-			reference->nearest_m = fminf(reference->nearest_m, depth_m);
-		}
-	}
-}
-
-/* ---- the mesh */
+/* ---- the points of the grid */
 
 /* Returns where a column or row of points is, -1..1 within the picture. */
 static float across(int i, int cells)
@@ -137,6 +154,117 @@ static void find_way(float along[3], const struct view *from, int i, int j)
 	for (int k = 0; k < 3; k++)
 		along[k] = from->forward[k] + x * from->right[k] + y * from->up[k];
 }
+
+/* Writes where a direction or a place relative to the eye is in clip space, before the division.
+ * The matrix turns it as the panel is. */
+static void clip_place(float out[2], const struct view *view, const float to[3])
+{
+	for (int k = 0; k < 2; k++)
+		out[k] = view->clip[k] * to[0] + view->clip[4 + k] * to[1] +
+			 view->clip[8 + k] * to[2];
+}
+
+/* ---- depths */
+
+/* How a view's projection has depths: z of clip space, divided, is a + b / depth. */
+struct projection {
+	float a, b;
+};
+
+static struct projection projection_of(const struct view *view)
+{
+	const float along[3] = { view->clip[2], view->clip[6], view->clip[10] };
+	return (struct projection){ .a = vec_dot(along, view->forward), .b = view->clip[14] };
+}
+
+/* Returns a depth that was read, in metres. */
+static float depth_m(struct projection projection, const uint8_t digits[3])
+{
+	const float far_m = projection.b / (1 - projection.a);
+	const double depth = digits[0] / 255.0 + digits[1] / 65025.0 + digits[2] / 16581375.0;
+	const float m = (float)(projection.b / (2 * depth - 1 - (double)projection.a));
+	return m > 0 && m < far_share * far_m ? m : sky_m;
+}
+
+/* Returns the least in a cell. */
+static float depth_in_cell(struct projection projection, const uint8_t *depths, int i, int j)
+{
+	const uint8_t *nearest = NULL;
+	for (int y = j * IMAGE_WARP_STEP; y < (j + 1) * IMAGE_WARP_STEP; y++) {
+		const uint8_t *row = depths + 4 * (size_t)(y * IMAGE_WARP_ACROSS * IMAGE_WARP_STEP);
+		for (int x = i * IMAGE_WARP_STEP; x < (i + 1) * IMAGE_WARP_STEP; x++)
+			if (!nearest || memcmp(row + 4 * x, nearest, 3) < 0)
+				nearest = row + 4 * x;
+	}
+	return depth_m(projection, nearest);
+}
+
+/* Returns the least of the cells around a point: a cell that shows anything near is near as a
+ * whole, so that only what is behind gets stretched. */
+static float depth_around(float cells[IMAGE_WARP_UP][IMAGE_WARP_ACROSS], int i, int j)
+{
+	float nearest = sky_m;
+	for (int y = j - 1; y <= j; y++)
+		for (int x = i - 1; x <= i; x++)
+			if (x >= 0 && y >= 0 && x < IMAGE_WARP_ACROSS && y < IMAGE_WARP_UP)
+				nearest = fminf(nearest, cells[y][x]);
+	return nearest;
+}
+
+static int within(int value, int most)
+{
+	return value < 0 ? 0 : value > most ? most : value;
+}
+
+void image_warp_take_depths(struct image_warp_reference *reference, const uint8_t *depths)
+{
+	const struct projection projection = projection_of(&reference->view);
+	float cells[IMAGE_WARP_UP][IMAGE_WARP_ACROSS];
+	for (int j = 0; j < IMAGE_WARP_UP; j++)
+		for (int i = 0; i < IMAGE_WARP_ACROSS; i++)
+			cells[j][i] = depth_in_cell(projection, depths, i, j);
+	reference->nearest_m = sky_m;
+	for (int j = 0; j < IMAGE_WARP_ROWS; j++) {
+		for (int i = 0; i < IMAGE_WARP_COLUMNS; i++) {
+			const float depth = depth_around(cells, within(i - 1, IMAGE_WARP_ACROSS),
+							 within(j - 1, IMAGE_WARP_UP));
+			reference->depth_m[j * IMAGE_WARP_COLUMNS + i] = depth;
+			reference->nearest_m = fminf(reference->nearest_m, depth);
+		}
+	}
+}
+
+int image_warp_read_depths(struct image_warp *warp, struct image_warp_reference *reference)
+{
+	const struct view *view = &reference->view;
+	uint8_t *depths = malloc(4 * IMAGE_WARP_DEPTHS);
+	float right[2], up[2];
+	if (!depths)
+		return -ENOMEM;
+	clip_place(right, view, view->right);
+	clip_place(up, view, view->up);
+	gl_target_bind(&warp->depths);
+	glDisable(GL_BLEND);
+	glDisable(GL_DEPTH_TEST);
+	glUseProgram(warp->depth_program);
+	glUniform4f(glGetUniformLocation(warp->depth_program, "u_axes"), right[0] * view->tan_x,
+		    right[1] * view->tan_x, up[0] * view->tan_y, up[1] * view->tan_y);
+	gl_bind_texture(0, reference->picture.depths);
+	glDisableVertexAttribArray(1);
+	glDisableVertexAttribArray(2);
+	gl_draw_square();
+	glEnable(GL_DEPTH_TEST);
+	glPixelStorei(GL_PACK_ALIGNMENT, 4);
+	glReadPixels(0, 0, warp->depths.width_px, warp->depths.height_px, GL_RGBA, GL_UNSIGNED_BYTE,
+		     depths);
+	const int rc = gl_check("reading the depths of a picture");
+	if (rc == 0)
+		image_warp_take_depths(reference, depths);
+	free(depths);
+	return rc;
+}
+
+/* ---- the mesh */
 
 /* Writes where a point of the mesh is, relative to the view's eye. Returns its depth in the view,
  * never behind the eye. */
@@ -173,21 +301,12 @@ static float find_bare(const struct image_warp_reference *reference, const struc
 	return sides / (float)top + ends / (float)right;
 }
 
-bool image_warp_reaches(const struct image_warp_reference *reference, const struct view *view)
+float image_warp_off(const struct image_warp_reference *reference, const struct view *view)
 {
-	return vec_dot(reference->view.forward, view->forward) >= reach_cosine &&
-	       vec_distance(reference->view.eye_m, view->eye_m) <=
-		       reach_share * reference->nearest_m &&
-	       find_bare(reference, view) <= bare_most;
-}
-
-/* Writes where a direction or a place relative to the eye is in clip space, before the division.
- * The matrix turns it as the panel is. */
-static void clip_place(float out[2], const struct view *view, const float to[3])
-{
-	for (int k = 0; k < 2; k++)
-		out[k] = view->clip[k] * to[0] + view->clip[4 + k] * to[1] +
-			 view->clip[8 + k] * to[2];
+	const float cosine = fminf(vec_dot(reference->view.forward, view->forward), 1);
+	const float moved_m = vec_distance(reference->view.eye_m, view->eye_m);
+	return fmaxf(fmaxf(acosf(cosine) / reach_angle, moved_m / reference->nearest_m),
+		     find_bare(reference, view) / bare_most);
 }
 
 void image_warp_place(struct image_warp *warp, const struct image_warp_reference *reference,

@@ -9,12 +9,12 @@
 
 #include "geometry/view.h"
 #include "render/display/gl.h"
-#include "render/lumigraph/visibility.h"
 
 enum {
-	IMAGE_WARP_STEP = 4, /* pixels of the visibility pass between two points */
-	IMAGE_WARP_ACROSS = VISIBILITY_WIDTH / IMAGE_WARP_STEP, /* cells */
-	IMAGE_WARP_UP = VISIBILITY_HEIGHT / IMAGE_WARP_STEP,
+	IMAGE_WARP_ACROSS = 80, /* cells */
+	IMAGE_WARP_UP = 45,
+	IMAGE_WARP_STEP = 4, /* depths that are read between two points */
+	IMAGE_WARP_DEPTHS = IMAGE_WARP_ACROSS * IMAGE_WARP_UP * IMAGE_WARP_STEP * IMAGE_WARP_STEP,
 	/* One ring of cells around them fills the frame where the picture ends. */
 	IMAGE_WARP_COLUMNS = IMAGE_WARP_ACROSS + 3, /* of points */
 	IMAGE_WARP_ROWS = IMAGE_WARP_UP + 3,
@@ -36,21 +36,29 @@ struct image_warp_point {
 };
 
 struct image_warp {
-	GLuint program; /* 0: not built yet */
+	GLuint program;          /* 0: not built yet */
+	GLuint depth_program;    /* likewise */
+	struct gl_target depths; /* what is read of a picture's */
 	struct image_warp_point point[IMAGE_WARP_POINTS];
 	uint16_t index[IMAGE_WARP_INDICES];
 };
 
+/* Returns whether the driver can do it: textures of depths, and fragments with highp. */
+bool image_warp_is_supported(void);
 /* Makes the picture's target of that size, unless it has it, and binds it. The first call also
- * builds the program. As gl_program_build and gl_target_create. */
+ * builds the programs. As gl_program_build and gl_target_create. */
 must_check int image_warp_begin(struct image_warp *warp, struct image_warp_reference *reference,
 				int width_px, int height_px);
-/* Takes the depths from a visibility pass that was read back, of the reference's view. Where
+/* Takes the depths of the grid from those that the picture was drawn with. Waits for the GPU.
+ * -ENOMEM, or as gl_check; then they are what they were. */
+must_check int image_warp_read_depths(struct image_warp *warp,
+				      struct image_warp_reference *reference);
+/* The same from IMAGE_WARP_DEPTHS depths in memory, in the view's rows, upwards; each as the depth
+ * buffer has it, 0..1, in 24 bits: the highest byte first, then a byte that does not count. Where
  * nothing was seen, and beyond it, they are infinitely far. No GL. */
-void image_warp_take_depths(struct image_warp_reference *reference,
-			    const struct visibility *visibility);
-/* Returns whether the eye is so near to that of the reference that little is missing. No GL. */
-bool image_warp_reaches(const struct image_warp_reference *reference, const struct view *view);
+void image_warp_take_depths(struct image_warp_reference *reference, const uint8_t *depths);
+/* Returns how far the eye is from that of the reference: up to 1 little is missing. No GL. */
+float image_warp_off(const struct image_warp_reference *reference, const struct view *view);
 /* Fills warp->point for the view. No GL. */
 void image_warp_place(struct image_warp *warp, const struct image_warp_reference *reference,
 		      const struct view *view);

@@ -24,7 +24,7 @@ static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
 static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
 /* Below 0 a picture is drawn over several frames: from this share of it in each just there, where
  * showing the last one costs no more than is gained, to the least. */
-static const float level_share = -0.4f, share_most = 0.67f, share_least = 0.16f;
+static const float level_share = -0.4f, share_most = 0.67f, share_least = 0.1f;
 /* Below that such pictures become smaller, to this part of the least scale of whole ones. */
 static const float level_least = -0.7f, scale_least = 0.7f;
 /* Where the parts of the effort begin to give way, in the order of what a picture loses for the

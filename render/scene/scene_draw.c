@@ -24,9 +24,10 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
-	SEASON_US = 1000000,  /* longest season of the tiles while the eye moves */
-	PASSED_MOST_MS = 100, /* a long pause must not make fades jump */
-	SHARE_PX_MAX = 320,   /* width of the picture from which image_share is counted */
+	SEASON_US = 1000000,    /* longest season of the tiles while the eye moves */
+	PASSED_MOST_MS = 100,   /* a long pause must not make fades jump */
+	SHARE_PX_MAX = 320,     /* width of the picture from which image_share is counted */
+	DEPTH_TRIANGLES = 8000, /* of a face's depths in a frame, where frames take too long */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };
 
@@ -47,37 +48,39 @@ static bool face_sees(const struct cube_axes *axes, const float sample[3], const
 	       fabsf(vec_dot(to, axes->up)) < depth + reach;
 }
 
-/* Draws the patches of the face that was begun, in the order of the list, up to `to`. */
-static void draw_depth_patches(struct scene *scene, uint32_t to)
+/* Draws the patches of the face that was begun, in the order of the list, until so many triangles
+ * are drawn. */
+static void draw_depth_patches(struct scene *scene, uint32_t triangles)
 {
 	struct depth_task *task = &scene->depth_task;
 	const struct cube_axes *axes = &cube_axes[task->face % CUBE_FACES];
+	uint32_t drawn = 0;
 	glEnableVertexAttribArray(0);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);
-	for (; task->drawn < to; task->drawn++) {
-		uint32_t p = scene->around.patches[task->drawn];
+	for (; task->drawn < scene->around.patch_count && drawn < triangles; task->drawn++) {
+		const uint32_t p = scene->around.patches[task->drawn];
 		const struct hierarchy_patch *patch = &scene->hierarchy.patches[p];
+		const uint32_t count = scene->geometry.patches[p].content.mesh.triangle_count;
 		if (!face_sees(axes, task->sample_m, patch->centre_m, patch->radius_m))
 			continue;
 		geometry_bind(&scene->geometry, p);
 		depth_patch(&scene->depth, patch->centre_m);
-		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
+		geometry_draw(0, count);
+		drawn += count;
 	}
-	if (to == scene->around.patch_count) {
-		depth_end(&scene->depth, task->slot, task->face, scene->cut_signature);
+	if (task->drawn == scene->around.patch_count) {
+		depth_end(&scene->depth, task->slot, task->face, task->cut);
 		task->is_begun = false;
 	}
 }
 
-/* Draws the depths of a face, or where frames take too long the first half of them. */
-static void draw_depth_face(struct scene *scene, int slot, face_key face, bool halved)
+/* Draws the depths of a face, or the first so many triangles of them. */
+static void draw_depth_face(struct scene *scene, int slot, face_key face, uint32_t triangles)
 {
 	const struct cut_options options = { .error_px = depth_error_px,
 					     .triangle_budget = scene->options.triangle_budget };
 	struct depth_task *task = &scene->depth_task;
-	/* What had to be begun again is drawn at once, or it might never end. */
-	halved = halved && !task->is_begun;
 	*task = (struct depth_task){
 		.is_begun = true, .slot = slot, .face = face, .cut = scene->cut_signature
 	};
@@ -85,19 +88,29 @@ static void draw_depth_face(struct scene *scene, int slot, face_key face, bool h
 	cut_update_around(&scene->around, task->sample_m, (float)scene->depth.layout.face_px / 2,
 			  scene->geometry.loaded, &options);
 	depth_begin(&scene->depth, face, task->sample_m, &scene->root);
-	draw_depth_patches(scene, scene->around.patch_count / (halved ? 2 : 1));
+	draw_depth_patches(scene, triangles);
 }
 
-/* Draws the other half of a face, if it is still wanted and no patch has come or gone. */
-static bool complete_depth_face(struct scene *scene)
+/* Returns whether the face that was begun is still wanted, and can be gone on with. */
+static bool can_continue_depth(const struct scene *scene)
 {
-	struct depth_task *task = &scene->depth_task;
+	const struct depth_task *task = &scene->depth_task;
 	const struct tiles_face *face = &scene->tiles.faces[task->slot];
-	if (!task->is_begun || task->cut != scene->cut_signature || !face->used ||
-	    face->key != task->face)
+	if (!task->is_begun || !face->used || face->key != task->face)
+		return false;
+	for (uint32_t i = task->drawn; i < scene->around.patch_count; i++)
+		if (!scene->geometry.patches[scene->around.patches[i]].pieces)
+			return false;
+	return true;
+}
+
+static bool continue_depth_face(struct scene *scene, uint32_t triangles)
+{
+	const struct depth_task *task = &scene->depth_task;
+	if (!can_continue_depth(scene))
 		return false;
 	depth_resume(&scene->depth, task->face, task->sample_m, &scene->root);
-	draw_depth_patches(scene, scene->around.patch_count);
+	draw_depth_patches(scene, triangles);
 	return true;
 }
 
@@ -105,10 +118,10 @@ static bool complete_depth_face(struct scene *scene)
  * of the mesh. */
 void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame *out)
 {
-	const bool halved = scene_gives_way(scene);
+	const uint32_t triangles = scene_gives_way(scene) ? DEPTH_TRIANGLES : UINT32_MAX;
 	int outdated = -1;
 	scene->depth_is_stale = false;
-	out->depth_faces_drawn += complete_depth_face(scene);
+	out->depth_faces_drawn += continue_depth_face(scene, triangles);
 	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
 		const struct tiles_face *face = &scene->tiles.faces[i];
 		if (!face->used || face->stamp != scene->tiles.stamp)
@@ -118,11 +131,12 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 				outdated = i;
 			continue;
 		}
-		if (out->depth_faces_drawn > 0 && (halved || clock_now_us() >= until_us)) {
+		if (out->depth_faces_drawn > 0 &&
+		    (triangles < UINT32_MAX || clock_now_us() >= until_us)) {
 			scene->depth_is_stale = true;
 			return;
 		}
-		draw_depth_face(scene, i, face->key, halved);
+		draw_depth_face(scene, i, face->key, triangles);
 		out->depth_faces_drawn++;
 		scene->depth_is_stale = scene->depth_task.is_begun;
 	}
@@ -131,7 +145,7 @@ void scene_draw_depth(struct scene *scene, int64_t until_us, struct scene_frame 
 	scene->depth_is_stale = true;
 	if (out->depth_faces_drawn > 0)
 		return;
-	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key, halved);
+	draw_depth_face(scene, outdated, scene->tiles.faces[outdated].key, triangles);
 	out->depth_faces_drawn++;
 }
 
@@ -248,7 +262,7 @@ static bool show_enlarged(struct scene *scene, const struct gl_place *place)
 	struct view small;
 	if (!scene_gives_way(scene))
 		return false;
-	enlargement_view(&small, view, scene_direct_scale(scene));
+	enlargement_view(&small, view, scene->used.scale);
 	if (small.width_px >= view->width_px || enlargement_begin(&scene->enlargement, &small) < 0)
 		return false;
 	scene_begin_picture(scene);

@@ -66,6 +66,13 @@ struct scene_slice {
 	uint32_t at;                     /* the next piece that may be its */
 };
 
+enum reference_kind {
+	REFERENCE_PLAIN,
+	REFERENCE_WITH_PASS, /* a visibility pass is drawn, read and counted before it */
+	REFERENCE_SMALL,     /* for an eye that is too fast for the others */
+	REFERENCE_KINDS,
+};
+
 /* The pictures that are warped where frames take too long (scene_reference.h). */
 struct scene_references {
 	struct image_warp warp;
@@ -73,17 +80,20 @@ struct scene_references {
 	int shown; /* of the two, if has_shown */
 	bool has_shown;
 	bool is_begun;            /* the other one is being drawn */
-	bool is_read, is_counted; /* its visibility pass was */
+	enum reference_kind kind; /* of it */
+	bool is_read, is_counted; /* its visibility pass was, or it has none */
+	uint32_t since_pass;      /* pictures since one had a visibility pass */
+	float scale;              /* of it, as scene_effort has it */
 	uint32_t since_depth;     /* frames since one was left to depths of faces */
 	bool is_kept;             /* the one that is shown next was drawn at rest, for this view */
 	uint32_t numbered;        /* of its pieces, the first that are in the pass */
-	float cost;               /* of all of it, in triangles of the pass */
+	float cost;               /* of which slices are shares, in triangles of the pass */
 	struct scene_slice slice; /* of the picture */
 	/* How the eye moves, in metres and parts of a direction for each millisecond. */
 	float eye_speed[3], turn_speed[3];
-	uint32_t moving_frames; /* since it began to */
-	float begun_ms;         /* time since the coming one was begun */
-	float took_ms;          /* time from its begin to its end, of the last one */
+	uint32_t moving_frames;         /* since it began to */
+	float begun_ms;                 /* time since the coming one was begun */
+	float took_ms[REFERENCE_KINDS]; /* from begin to end, of the last one of each kind */
 };
 
 /* The picture at rest that is drawn, and the sum of those before (scene_still.h). */

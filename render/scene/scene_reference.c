@@ -14,6 +14,8 @@
 
 /* Frames between two that renew depths of faces, and between two where some are missing. */
 enum { DEPTH_FRAMES = 4, MISSING_FRAMES = 2 };
+/* Pictures without a visibility pass between two with one. */
+enum { PASS_PICTURES = 4 };
 
 /* What reading a pass back and what counting it takes, in triangles of it. */
 static const float reading_cost = 0.3f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
@@ -22,13 +24,14 @@ static const float counting_cost = 0.5f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
 static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for
  * farther away than this share of what is nearest: eyes stop and turn round. */
-static const float lead_most_ms = 300, lead_most_share = 0.4f;
-/* Where no reference is near, at least this share of the next one is drawn beside each direct
- * picture, so that there are few of those. */
-static const float direct_share = 0.25f;
-/* The direct picture has this part of the scale of references, because it is for an eye that is too
- * fast to see details; but this scale at least. */
-static const float direct_part = 0.5f, direct_least = 0.25f;
+static const float lead_most_ms = 300, lead_most_share = 0.4f, lead_hurry_share = 1;
+/* For an eye that will be out of reach within this time there are small pictures. They have this
+ * part of the scale, since it is too fast to see details; but this scale at least. This share of
+ * one is drawn in each frame. */
+static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.6f;
+/* How far off the last one is shown while a small one is being drawn. Farther away one is drawn at
+ * once, for this share of the usual time ahead: it is shown already in this frame. */
+static const float off_most = 3, catch_up_share = 0.5f;
 /* The eye's speed is that of about so long: fingers tremble. */
 static const float speed_ms = 60;
 /* A turn uncovers the edge of a picture as long as it is shown, so its direction is that of the
@@ -37,8 +40,8 @@ static const float turn_lead = 1.5f;
 
 bool scene_uses_references(const struct scene *scene)
 {
-	return scene->used.share < 1 && scene->has_hierarchy && scene->backdrop.share <= 0 &&
-	       (scene->eye_moves || scene_scenery_is_still(scene)) &&
+	return scene->used.share < 1 && image_warp_is_supported() && scene->has_hierarchy &&
+	       scene->backdrop.share <= 0 && (scene->eye_moves || scene_scenery_is_still(scene)) &&
 	       scene->stream.growth.triangle_count == 0;
 }
 
@@ -72,23 +75,25 @@ void scene_note_motion(struct scene *scene, const struct view *view, float passe
 	r->begun_ms += passed_ms;
 }
 
-float scene_direct_scale(const struct scene *scene)
+/* Returns how far off the last one is for a view, as image_warp_off. */
+static float find_off(const struct scene *scene, const struct view *view)
 {
-	const float scale = scene->used.scale;
-	return scene_uses_references(scene) ? fmaxf(direct_part * scale, direct_least) : scale;
+	const struct scene_references *r = &scene->references;
+	return r->has_shown ? image_warp_off(&r->of[r->shown], view) : INFINITY;
 }
 
 /* ---- the view of the next one */
 
 /* Returns in how many milliseconds the next picture is shown first, if it takes as long as the last
- * one. A lead to the middle of the time in which it is shown gave no better pictures
+ * one of its kind. A lead to the middle of the time in which it is shown gave no better pictures
  * (docs/figures.md). */
 static float lead_ms(const struct scene *scene)
 {
 	const struct scene_references *r = &scene->references;
 	const float speed = sqrtf(vec_dot(r->eye_speed, r->eye_speed));
-	const float most_m = lead_most_share * r->of[r->shown].nearest_m;
-	float ms = fminf(r->took_ms, lead_most_ms);
+	const float share = r->kind == REFERENCE_SMALL ? lead_hurry_share : lead_most_share;
+	const float most_m = share * r->of[r->shown].nearest_m;
+	float ms = fminf(r->took_ms[r->kind], lead_most_ms);
 	if (speed * ms > most_m)
 		ms = most_m / speed;
 	return ms;
@@ -122,19 +127,32 @@ static struct image_warp_reference *coming(struct scene *scene)
 	return &scene->references.of[1 - scene->references.shown];
 }
 
+/* Finds what a slice of the whole may cost: of a picture with a pass even if it has none, so that
+ * all slices take equally long. */
 static void sum_costs(struct scene *scene, float picture_px)
 {
-	float cost = reading_cost + counting_cost;
+	struct scene_references *r = &scene->references;
+	const bool has_pass = r->kind != REFERENCE_SMALL;
+	r->cost = has_pass ? reading_cost + counting_cost : 0;
 	for (uint32_t i = 0; i < scene->counted_all; i++) {
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
 			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
-		cost += (float)piece->triangle_count + scene_piece_cost(scene, v, 1, picture_px);
+		r->cost += has_pass ? (float)piece->triangle_count : 0;
+		r->cost += scene_piece_cost(scene, v, 1, picture_px);
 	}
-	scene->references.cost = cost;
 }
 
-/* Lists the pieces of another view, and begins its visibility pass and its picture with them. */
+/* Returns what the picture is drawn with. */
+static struct surface_frame frame_of(const struct scene *scene, struct view *small)
+{
+	const struct scene_references *r = &scene->references;
+	enlargement_view(small, &r->of[1 - r->shown].view, r->scale);
+	return scene_surface_frame(scene, small, PICTURE_ASIDE);
+}
+
+/* Lists the pieces of another view, and begins its picture with them, and its visibility pass if it
+ * has one. */
 static bool begin(struct scene *scene, float ahead_ms)
 {
 	struct scene_references *r = &scene->references;
@@ -142,23 +160,31 @@ static bool begin(struct scene *scene, float ahead_ms)
 	const struct view seen = scene->view;
 	struct view small;
 	scene->view = next->view = view_ahead(scene, ahead_ms);
-	enlargement_view(&small, &next->view, scene->used.scale);
+	r->scale = scene->used.scale;
+	if (r->kind == REFERENCE_SMALL)
+		r->scale = fmaxf(hurry_part * r->scale, hurry_least);
+	enlargement_view(&small, &next->view, r->scale);
 	if (image_warp_begin(&r->warp, next, small.width_px, small.height_px) < 0) {
 		scene->view = seen;
 		return false;
 	}
 	scene_begin_picture(scene);
 	scene_list_pieces(scene);
-	r->is_begun = scene_begin_visibility(scene, scene_scenery_far_m(scene, next->view.eye_m));
+	r->is_read = r->is_counted = r->kind != REFERENCE_WITH_PASS;
+	const bool is_kept = r->is_counted
+				     ? scene_keep_pieces(scene)
+				     : scene_begin_visibility(
+					       scene, scene_scenery_far_m(scene, next->view.eye_m));
 	scene->view = seen;
 	scene_list_pieces(scene);
-	if (!r->is_begun)
+	if (!is_kept)
 		return false;
-	scene->counting = r->is_read = r->is_counted = false;
+	r->is_begun = true;
+	scene->counting = false;
 	r->begun_ms = 0;
 	r->numbered = 0;
 	sum_costs(scene, small.picture_px);
-	const struct surface_frame frame = scene_surface_frame(scene, &small, PICTURE_ASIDE);
+	const struct surface_frame frame = frame_of(scene, &small);
 	scene_begin_slices(scene, &frame, scene->counted, scene->counted_all, &r->slice);
 	return true;
 }
@@ -181,42 +207,53 @@ static float draw_numbers(struct scene *scene, float cost)
 	return drawn;
 }
 
-/* Draws scenery into the pass, and takes its depths. */
-static void read_depths(struct scene *scene)
+/* Draws scenery into the pass and reads it back. */
+static void read_pass(struct scene *scene)
 {
 	visibility_resume(&scene->visibility, &scene->root);
 	scene_draw_scenery_depths(scene);
-	if (visibility_end(&scene->visibility) < 0) {
-		log_warn("render", "a picture will be warped with the depths of another one");
-		scene->references.is_counted = true; /* there is nothing to count */
-	}
-	image_warp_take_depths(coming(scene), &scene->visibility);
 	scene->references.is_read = true;
+	if (visibility_end(&scene->visibility) < 0)
+		scene->references.is_counted = true; /* there is nothing to count */
 }
 
-/* Draws pieces of the picture. After the last one it is the one that is shown. */
-static void draw_pieces(struct scene *scene, float cost)
+static void count_pass(struct scene *scene)
+{
+	scene_count_visibility(scene);
+	scene->references.is_counted = true;
+	scene->references.since_pass = 0;
+}
+
+/* It is whole: takes its depths, draws the outline over it, and shows it from now on. */
+static void end_picture(struct scene *scene, const struct surface_frame *frame)
 {
 	struct scene_references *r = &scene->references;
 	struct image_warp_reference *next = coming(scene);
 	const struct gl_place place = { .framebuffer = next->picture.framebuffer };
-	struct view small;
-	enlargement_view(&small, &next->view, scene->used.scale);
-	small.width_px = next->picture.width_px;
-	small.height_px = next->picture.height_px;
-	const struct surface_frame frame = scene_surface_frame(scene, &small, PICTURE_ASIDE);
+	scene_draw_scenery(scene, frame);
+	if (image_warp_read_depths(&r->warp, next) < 0)
+		log_warn("render", "a picture will be warped with the depths of another one");
 	gl_target_bind(&next->picture);
-	scene_resume_picture();
-	if (!scene_draw_slice(scene, &frame, &r->slice, cost))
-		return;
-	scene_draw_scenery(scene, &frame);
-	scene_draw_mask(scene, &small, &next->picture);
-	outline_draw(&scene->outline, &place, small.width_px, small.height_px);
+	scene_draw_mask(scene, frame->view, &next->picture);
+	outline_draw(&scene->outline, &place, frame->view->width_px, frame->view->height_px);
 	r->shown = 1 - r->shown;
 	r->has_shown = true;
 	r->is_begun = false;
+	r->since_pass++;
 	if (r->begun_ms > 0)
-		r->took_ms = r->begun_ms;
+		r->took_ms[r->kind] = r->begun_ms;
+}
+
+/* Draws pieces of the picture. */
+static void draw_pieces(struct scene *scene, float cost)
+{
+	struct scene_references *r = &scene->references;
+	struct view small;
+	const struct surface_frame frame = frame_of(scene, &small);
+	gl_target_bind(&coming(scene)->picture);
+	scene_resume_picture();
+	if (scene_draw_slice(scene, &frame, &r->slice, cost))
+		end_picture(scene, &frame);
 }
 
 /* Returns whether a face that is used has no depths. */
@@ -235,44 +272,64 @@ static bool depth_is_missing(const struct scene *scene)
 static void go_on(struct scene *scene, float cost)
 {
 	struct scene_references *r = &scene->references;
-	if (r->numbered < scene->counted_count)
+	if (!r->is_counted && r->numbered < scene->counted_count)
 		cost -= draw_numbers(scene, cost);
-	if (r->numbered == scene->counted_count && !r->is_read && cost > 0) {
-		read_depths(scene);
+	if (!r->is_counted && r->numbered == scene->counted_count && !r->is_read && cost > 0) {
+		read_pass(scene);
 		cost -= reading_cost;
 	}
-	if (r->is_read && !r->is_counted && cost > 0) {
-		/* at rest the pass of the picture at rest was counted */
-		if (!r->is_kept)
-			scene_count_visibility(scene);
-		r->is_counted = true;
+	if (!r->is_counted && r->is_read && cost > 0) {
+		count_pass(scene);
 		cost -= counting_cost;
 	}
 	if (r->is_counted && cost > 0)
 		draw_pieces(scene, cost);
 }
 
-/* Returns whether the last one shows the eye what it sees now. */
-static bool is_near(const struct scene *scene)
+static enum reference_kind choose_kind(const struct scene *scene)
 {
 	const struct scene_references *r = &scene->references;
-	return r->has_shown && image_warp_reaches(&r->of[r->shown], &scene->view);
+	const struct view soon = view_ahead(scene, hurry_ms);
+	if (find_off(scene, &soon) > 1)
+		return REFERENCE_SMALL;
+	return r->since_pass < PASS_PICTURES ? REFERENCE_PLAIN : REFERENCE_WITH_PASS;
+}
+
+/* Draws a small one at once, because the last one shows too little of what the eye sees. */
+static bool catch_up(struct scene *scene)
+{
+	scene->references.kind = REFERENCE_SMALL;
+	if (!begin(scene, catch_up_share * lead_ms(scene)))
+		return false;
+	go_on(scene, INFINITY);
+	return true;
 }
 
 bool scene_build_reference(struct scene *scene)
 {
 	struct scene_references *r = &scene->references;
-	float share = scene->used.share;
+	const float off = find_off(scene, &scene->view);
+	const bool is_near = off <= 1;
 	r->is_kept = false;
 	r->since_depth++;
-	if (!is_near(scene))
-		share = fmaxf(share, direct_share);
-	else if (r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
+	if (off > off_most)
+		return catch_up(scene);
+	if (is_near && !(r->is_begun && r->kind == REFERENCE_SMALL) &&
+	    r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
 		r->since_depth = 0;
 		return false;
 	}
-	if (!r->is_begun && !begin(scene, lead_ms(scene)))
-		return false;
+	/* there is no time for its pass */
+	if (!is_near && !r->is_counted)
+		r->is_begun = false;
+	if (!r->is_begun) {
+		r->kind = choose_kind(scene);
+		if (!begin(scene, lead_ms(scene)))
+			return false;
+	}
+	const float share = is_near && r->kind != REFERENCE_SMALL
+				    ? scene->used.share
+				    : fmaxf(scene->used.share, hurry_share);
 	go_on(scene, share * r->cost);
 	return true;
 }
@@ -286,6 +343,7 @@ void scene_keep_reference(struct scene *scene)
 	scene->used = scene->effort;
 	r->is_kept = true;
 	r->is_begun = false;
+	r->kind = REFERENCE_PLAIN; /* the pass of the picture at rest was counted */
 	if (scene_uses_references(scene) && begin(scene, 0)) {
 		go_on(scene, INFINITY);
 		image_warp_let_go(coming(scene));
@@ -301,7 +359,8 @@ bool scene_show_reference(struct scene *scene, const struct gl_place *place)
 	struct scene_references *r = &scene->references;
 	const struct view *view = &scene->view;
 	struct view small;
-	if (!scene_uses_references(scene) || !is_near(scene))
+	const float most = r->kind == REFERENCE_SMALL ? off_most : 1;
+	if (!scene_uses_references(scene) || find_off(scene, view) > most)
 		return false;
 	enlargement_view(&small, view, scene->used.scale);
 	if (enlargement_begin(&scene->enlargement, &small) < 0)

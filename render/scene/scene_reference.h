@@ -1,6 +1,6 @@
 /* Reference pictures, where frames take too long: drawn over several frames for where the eye will
- * be, then warped to where it is (render/lumigraph/image_warp.h). A reference picture and its
- * visibility pass have the same view and the same pieces. Private to render/scene. */
+ * be, then warped to where it is (render/lumigraph/image_warp.h). Every fifth one has a visibility
+ * pass of the same view and pieces. Private to render/scene. */
 #ifndef GOPURA_RENDER_SCENE_SCENE_REFERENCE_H
 #define GOPURA_RENDER_SCENE_SCENE_REFERENCE_H
 
@@ -12,14 +12,12 @@
 bool scene_uses_references(const struct scene *scene);
 /* Notes how the eye moves; passed_ms since the last frame. */
 void scene_note_motion(struct scene *scene, const struct view *view, float passed_ms);
-/* Draws a share of the next reference picture, a larger one where none can be shown. Every fifth
- * frame is left to depths of faces, and every third one where some are missing. Returns whether
- * anything was drawn. */
+/* Draws a share of the next reference picture; all of a small one, for this frame, where the eye is
+ * too far off the last one. Every fifth frame is left to depths of faces, and every third one where
+ * some are missing. Returns whether anything was drawn. */
 bool scene_build_reference(struct scene *scene);
 /* Shows the last one as the eye sees it now. Returns whether there is one that is near enough. */
 bool scene_show_reference(struct scene *scene, const struct gl_place *place);
-/* Returns the scale of pictures that are drawn directly. */
-float scene_direct_scale(const struct scene *scene);
 /* At rest: draws the one that the next motion begins with, unless it did since the picture last
  * changed, so that the answer to a touch need not wait for a whole one. */
 void scene_keep_reference(struct scene *scene);

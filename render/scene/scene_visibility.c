@@ -52,7 +52,7 @@ void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 	}
 }
 
-bool scene_begin_visibility(struct scene *scene, float beside_m)
+bool scene_keep_pieces(struct scene *scene)
 {
 	const uint32_t all = scene->visible_count + scene->leaving_count;
 	if (ARRAY_RESERVE(scene->counted, scene->counted_room, all, UINT32_MAX) < 0) {
@@ -65,6 +65,13 @@ bool scene_begin_visibility(struct scene *scene, float beside_m)
 	if (all > 0)
 		memcpy(scene->counted, scene->visible, all * sizeof(*scene->counted));
 	scene->references.is_begun = false;
+	return true;
+}
+
+bool scene_begin_visibility(struct scene *scene, float beside_m)
+{
+	if (!scene_keep_pieces(scene))
+		return false;
 	scene->counting_cut = scene->cut_signature;
 	visibility_begin(&scene->visibility, &scene->view, &scene->root, beside_m);
 	return true;

@@ -8,6 +8,8 @@
  * Returns whether anything was drawn for it. */
 bool scene_take_visibility(struct scene *scene, bool moved);
 
+/* Keeps the listed pieces as scene->counted; false: without memory for it. */
+bool scene_keep_pieces(struct scene *scene);
 /* The same in steps. Begins a pass of the listed pieces in the view of the frame, beside_m as
  * visibility_begin has it; false: without memory for it. */
 bool scene_begin_visibility(struct scene *scene, float beside_m);

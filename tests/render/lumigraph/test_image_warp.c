@@ -8,11 +8,14 @@
 #include "tests/check.h"
 
 enum { SAMPLES_ACROSS = 64, SAMPLES_UP = 36 };
+enum {
+	DEPTHS_WIDTH = IMAGE_WARP_STEP * IMAGE_WARP_ACROSS,
+	DEPTHS_HEIGHT = IMAGE_WARP_STEP * IMAGE_WARP_UP,
+};
 
 static struct image_warp warp;
 static struct image_warp_reference reference;
-static struct visibility pass;
-static uint8_t pixels[4 * VISIBILITY_WIDTH * VISIBILITY_HEIGHT];
+static uint8_t depths[4 * IMAGE_WARP_DEPTHS];
 
 static struct view view_from(float x, float y, float z, int rotation_deg)
 {
@@ -31,37 +34,53 @@ static struct view view_from(float x, float y, float z, int rotation_deg)
 	return view;
 }
 
-/* A pass of a far limit of 100 m that saw what depth_at says; 0: nothing. */
-static void see(float (*depth_at)(int x, int y), int rotation_deg)
+/* Returns what the depth buffer has, in 24 bits. */
+static uint32_t depth_bits(const struct view *view, float depth_m)
 {
-	reference.view = view_from(0, 0, 0, rotation_deg);
-	pass = (struct visibility){ .pixels = pixels, .view = reference.view, .far_m = 100 };
-	for (int y = 0; y < VISIBILITY_HEIGHT; y++) {
-		for (int x = 0; x < VISIBILITY_WIDTH; x++) {
-			uint8_t *pixel = pixels + 4 * (y * VISIBILITY_WIDTH + x);
-			const int units = (int)(depth_at(x, y) / 100 * 65535);
+	float to[3], z = view->clip[14];
 
-			pixel[0] = 0;
-			pixel[1] = units > 0; /* the number of a piece */
-			pixel[2] = (uint8_t)(units >> 8);
-			pixel[3] = (uint8_t)units;
-		}
-	}
-	image_warp_take_depths(&reference, &pass);
+	vec_scale(to, depth_m, view->forward);
+	for (int k = 0; k < 3; k++)
+		z += view->clip[4 * k + 2] * to[k];
+	return (uint32_t)((z / depth_m + 1) / 2 * 16777215);
 }
 
-static float a_wall(int x, int y)
+/* A picture of what depth_at says at a place of the view, each 0..1, y upwards; 0: nothing. Three
+ * digits in base 255, as the program writes them. */
+static void see(float (*depth_at)(float x, float y), int rotation_deg)
+{
+	reference.view = view_from(0, 0, 0, rotation_deg);
+	for (int j = 0; j < DEPTHS_HEIGHT; j++) {
+		for (int i = 0; i < DEPTHS_WIDTH; i++) {
+			const float depth_m = depth_at(((float)i + 0.5f) / DEPTHS_WIDTH,
+						       ((float)j + 0.5f) / DEPTHS_HEIGHT);
+			uint8_t *at = depths + 4 * (j * DEPTHS_WIDTH + i);
+			double left = depth_m > 0
+					      ? depth_bits(&reference.view, depth_m) / 16777215.0
+					      : 0.9999999;
+
+			for (int k = 0; k < 3; k++) {
+				left *= 255;
+				at[k] = (uint8_t)left;
+				left -= at[k];
+			}
+		}
+	}
+	image_warp_take_depths(&reference, depths);
+}
+
+static float a_wall(float x, float y)
 {
 	(void)x, (void)y;
 	return 20;
 }
 
 /* Posts before a wall, and nothing above it. */
-static float posts(int x, int y)
+static float posts(float x, float y)
 {
-	if (y > 140)
+	if (y > 0.78f)
 		return 0;
-	return x / 32 % 2 ? 8 + (float)y / 40 : 30;
+	return (int)(10 * x) % 2 ? 8 + 4.5f * y : 30;
 }
 
 static struct image_warp_point point_at(int column, int row)
@@ -204,13 +223,13 @@ static void it_reaches_as_far_as_little_is_missing(void **state)
 	(void)state;
 	see(posts, 0);
 	struct view view = view_from(1, 0, 0, 0);
-	CHECK(image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) <= 1);
 	view = view_from(9, 0, 0, 0);
-	CHECK(!image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) > 1);
 	view = reference.view;
 	for (int k = 0; k < 3; k++)
 		view.forward[k] = reference.view.right[k];
-	CHECK(!image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) > 1);
 }
 
 /* Beside a wall that fills the picture, the eye that goes aside sees past its edge: by a tenth of
@@ -221,15 +240,15 @@ static void it_reaches_no_farther_than_its_edges(void **state)
 	see(a_wall, 0);
 	const float wall_m = reference.nearest_m;
 	struct view view = view_from(0.13f * wall_m, 0, 0, 0);
-	CHECK(image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) <= 1);
 	view = view_from(0.17f * wall_m, 0, 0, 0);
-	CHECK(!image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) > 1);
 	view = view_from(-0.17f * wall_m, 0, 0, 0);
-	CHECK(!image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) > 1);
 	view = view_from(0, -0.2f * wall_m, 0, 0); /* back */
-	CHECK(!image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) > 1);
 	view = view_from(0, 0.5f * wall_m, 0, 0);
-	CHECK(image_warp_reaches(&reference, &view));
+	CHECK(image_warp_off(&reference, &view) <= 1);
 }
 
 int main(void)

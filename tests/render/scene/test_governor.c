@@ -139,10 +139,10 @@ static void the_scale_gives_way_before_faces_and_these_before_triangles(void **s
 		CHECK(effort.scale <= last.scale && effort.triangles <= last.triangles);
 		CHECK(effort.faces <= last.faces && effort.budget <= last.budget);
 		CHECK(effort.faces == scene_effort_full.faces || effort.scale <= 0.5f);
-		CHECK(effort.scale >= 0.5f || effort.share < 0.17f);
+		CHECK(effort.scale >= 0.5f || effort.share < 0.11f);
 		CHECK(effort.triangles >= WHOLE || effort.faces == 1);
 		CHECK(effort.budget == 1 || effort.triangles <= WHOLE / 5);
-		CHECK(effort.share <= last.share && effort.share > 0.15f);
+		CHECK(effort.share <= last.share && effort.share > 0.09f);
 		CHECK(effort.share == 1 || effort.budget == 0.25f);
 		last = effort;
 	}
