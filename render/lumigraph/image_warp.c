@@ -68,8 +68,8 @@ static int build_depths(struct image_warp *warp)
 		return rc;
 	glUseProgram(warp->depth_program);
 	glUniform1i(glGetUniformLocation(warp->depth_program, "u_depths"), 0);
-	return gl_target_create_flat(&warp->depths, IMAGE_WARP_STEP * IMAGE_WARP_ACROSS,
-				     IMAGE_WARP_STEP * IMAGE_WARP_UP);
+	warp->axes = glGetUniformLocation(warp->depth_program, "u_axes");
+	return 0;
 }
 
 bool image_warp_is_supported(void)
@@ -98,8 +98,11 @@ int image_warp_begin(struct image_warp *warp, struct image_warp_reference *refer
 {
 	struct gl_target *picture = &reference->picture;
 	int rc = warp->program ? 0 : build(warp);
-	if (rc == 0 && !warp->depths.framebuffer)
+	if (rc == 0 && !warp->depth_program)
 		rc = build_depths(warp);
+	if (rc == 0 && !warp->depths.framebuffer)
+		rc = gl_target_create_flat(&warp->depths, IMAGE_WARP_STEP * IMAGE_WARP_ACROSS,
+					   IMAGE_WARP_STEP * IMAGE_WARP_UP);
 	if (rc < 0)
 		return rc;
 	if (picture->framebuffer && picture->width_px == width_px &&
@@ -247,8 +250,8 @@ int image_warp_read_depths(struct image_warp *warp, struct image_warp_reference 
 	glDisable(GL_BLEND);
 	glDisable(GL_DEPTH_TEST);
 	glUseProgram(warp->depth_program);
-	glUniform4f(glGetUniformLocation(warp->depth_program, "u_axes"), right[0] * view->tan_x,
-		    right[1] * view->tan_x, up[0] * view->tan_y, up[1] * view->tan_y);
+	glUniform4f(warp->axes, right[0] * view->tan_x, right[1] * view->tan_x, up[0] * view->tan_y,
+		    up[1] * view->tan_y);
 	gl_bind_texture(0, reference->picture.depths);
 	glDisableVertexAttribArray(1);
 	glDisableVertexAttribArray(2);

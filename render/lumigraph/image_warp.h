@@ -38,6 +38,7 @@ struct image_warp_point {
 struct image_warp {
 	GLuint program;          /* 0: not built yet */
 	GLuint depth_program;    /* likewise */
+	GLint axes;              /* its uniform */
 	struct gl_target depths; /* what is read of a picture's */
 	struct image_warp_point point[IMAGE_WARP_POINTS];
 	uint16_t index[IMAGE_WARP_INDICES];

@@ -22,12 +22,13 @@ static const float reading_cost = 0.3f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
 static const float counting_cost = 0.5f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
 /* Its field of view is so much wider, for what the eye turns to. */
 static const float wider = 1.06f;
-/* It is drawn for the time when it is shown first, but not for later than this, nor for
- * farther away than this share of what is nearest: eyes stop and turn round. */
+/* It is drawn for the time when it is shown first, but not for later than this, nor for farther
+ * away than this share of what is nearest, since eyes stop and turn round; fast ones do so later.
+ */
 static const float lead_most_ms = 300, lead_most_share = 0.4f, lead_hurry_share = 1;
-/* For an eye that will be out of reach within this time there are small pictures. They have this
- * part of the scale, since it is too fast to see details; but this scale at least. This share of
- * one is drawn in each frame. */
+/* For an eye that will be out of reach within about this time there are small pictures. They have
+ * this part of the scale, since it is too fast to see details; but this scale at least. This share
+ * of one is drawn in each frame. */
 static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.6f;
 /* How far off the last one is shown while a small one is being drawn. Farther away one is drawn at
  * once, for this share of the usual time ahead: it is shown already in this frame. */

@@ -13,11 +13,20 @@ static const float slices = 0.04f;
 
 static struct little_release *release; /* made once for all tests */
 static struct stage stage;
+static int rotation_deg; /* of the panel */
 
 static int raise(void **state)
 {
 	(void)state;
+	rotation_deg = 0;
 	raise_stage(&stage, release, SCENE_LUMIGRAPH);
+	return 0;
+}
+
+static int raise_turned(void **state)
+{
+	raise(state);
+	rotation_deg = 90;
 	return 0;
 }
 
@@ -30,8 +39,11 @@ static int strike(void **state)
 
 static void settle(void)
 {
+	struct camera camera = usual_camera;
+
+	camera.rotation_deg = rotation_deg;
 	for (int i = 0; i < FRAMES_MAX; i++) {
-		draw_stage(&stage, &usual_camera);
+		draw_stage(&stage, &camera);
 		if (stage.frame.settled)
 			return;
 		(void)little_release_serve(release, stage.scene, 16);
@@ -56,6 +68,7 @@ static void draw_aside(float aside_m, float share, const struct scene_mark *mark
 	struct camera camera = usual_camera;
 
 	spend(share, PLAN_ENTRIES);
+	camera.rotation_deg = rotation_deg;
 	for (int k = 0; k < 2; k++) {
 		camera.eye_m[k] += 0.7f * aside_m;
 		camera.target_m[k] += 0.1f * aside_m;
@@ -327,6 +340,8 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_warped_picture_is_that_of_the_eye, raise, strike),
+		cmocka_unit_test_setup_teardown(a_warped_picture_is_that_of_the_eye, raise_turned,
+						strike),
 		cmocka_unit_test_setup_teardown(a_fast_eye_has_small_pictures, raise, strike),
 		cmocka_unit_test_setup_teardown(a_resting_eye_keeps_a_picture_for_the_next_motion,
 						raise, strike),
