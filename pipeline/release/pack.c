@@ -129,6 +129,7 @@ static int place_block(struct packer *packer, struct hash page, const struct pag
 		       uint32_t child_count)
 {
 	const struct locator_block *before;
+	struct locator_block block;
 	uint64_t size = 0;
 
 	for (uint32_t i = 0; i < child_count; i++)
@@ -141,7 +142,9 @@ static int place_block(struct packer *packer, struct hash page, const struct pag
 		return write_block(packer, page, children, child_count, size);
 	packer->result->blocks_reused++;
 	packer->result->reused_bytes += size;
-	return add_block(packer, before);
+	block = *before;
+	block.page = page; /* a locator has the beginning of its name alone */
+	return add_block(packer, &block);
 }
 
 static int place_page(struct packer *packer, struct hash name)

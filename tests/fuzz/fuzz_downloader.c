@@ -251,7 +251,7 @@ static void begin(void)
 {
 	struct locator_block block = { page, 0, 0, sizeof(pack) };
 	struct hash pack_hash = pack_name;
-	struct locator about = { 1, 1, &pack_hash, &block };
+	struct locator about = { 1, 1, &pack_hash, &block, HASH_BYTES };
 
 	if (locator.size)
 		return;

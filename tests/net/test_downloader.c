@@ -66,7 +66,7 @@ static bool has_room(void *data)
 static void make_release(struct stage *stage, uint8_t pack_name)
 {
 	struct locator_block block = { stage->page, 0, 0, sizeof(stage->pack) };
-	struct locator locator = { 1, 1, &stage->pack_name, &block };
+	struct locator locator = { 1, 1, &stage->pack_name, &block, HASH_BYTES };
 
 	stage->pack_name = (struct hash){ { pack_name } };
 	buffer_finish(&stage->locator);
@@ -211,7 +211,7 @@ static void asks_for_one_turn_at_once(void **state)
 {
 	struct stage *stage = *state;
 	struct locator_block block = { stage->page, 0, 0, UINT32_MAX };
-	struct locator locator = { 1, 1, &stage->pack_name, &block };
+	struct locator locator = { 1, 1, &stage->pack_name, &block, HASH_BYTES };
 	struct message_want page = { .hash = { { 77 } },
 				     .page = stage->page,
 				     .offset = 50 << 20,

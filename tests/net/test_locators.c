@@ -70,7 +70,7 @@ static void answer(uint8_t pack, uint32_t place, struct hash page)
 {
 	struct locator_block block = { page, 0, place, 1000 };
 	struct hash pack_name = { { pack } };
-	struct locator locator = { 1, 1, &pack_name, &block };
+	struct locator locator = { 1, 1, &pack_name, &block, HASH_BYTES };
 	struct buffer file;
 
 	buffer_init(&file, 1 << 20);

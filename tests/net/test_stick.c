@@ -159,7 +159,7 @@ static void put_release(const struct stage *stage, const char *prefix, const cha
 {
 	static const char *const folders[] = { "", "root", "locator", "packs" };
 	struct locator_block block = { page, 0, 0, sizeof(stones) - 1 };
-	struct locator locator = { 1, 1, &pack, &block };
+	struct locator locator = { 1, 1, &pack, &block, HASH_BYTES };
 	char path[192], name[96], hex[HASH_HEX_BYTES];
 	struct buffer file;
 
