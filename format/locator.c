@@ -19,6 +19,12 @@ enum {
 /* Instead of the number of runs, in version 1. No file has so many. */
 static const uint32_t no_runs = UINT32_MAX;
 
+static int compare_pages(const void *a, const void *b)
+{
+	return hash_compare(((const struct locator_block *)a)->page,
+			    ((const struct locator_block *)b)->page);
+}
+
 /* ---- encoding */
 
 static int compare_places(const void *left, const void *right)
@@ -31,17 +37,14 @@ static int compare_places(const void *left, const void *right)
 }
 
 /* Returns how many bytes tell all names apart. The blocks are sorted by them. */
-static uint32_t find_name_bytes(const struct locator *locator)
+static uint32_t find_name_bytes(const struct locator_block *blocks, uint32_t count)
 {
 	uint32_t most = LOCATOR_NAME_BYTES;
 
-	for (uint32_t i = 1; i < locator->block_count; i++) {
-		const uint8_t *a = locator->blocks[i - 1].page.bytes;
-		const uint8_t *b = locator->blocks[i].page.bytes;
-
-		while (most < HASH_BYTES && memcmp(a, b, most) == 0)
+	for (uint32_t i = 1; i < count; i++)
+		while (most < HASH_BYTES &&
+		       memcmp(blocks[i - 1].page.bytes, blocks[i].page.bytes, most) == 0)
 			most++;
-	}
 	return most;
 }
 
@@ -67,9 +70,9 @@ static void put_runs(struct buffer *out, const struct locator_block *blocks, uin
 }
 
 static void put_tables(struct buffer *out, const struct locator *locator,
-		       const struct locator_block *blocks)
+		       const struct locator_block *blocks, uint32_t name_bytes)
 {
-	const uint32_t count = locator->block_count, name_bytes = find_name_bytes(locator);
+	const uint32_t count = locator->block_count;
 	uint32_t runs = 0;
 
 	for (uint32_t i = 0; i < count; i = end_of_run(blocks, count, i))
@@ -93,6 +96,7 @@ void locator_encode(struct buffer *out, const struct locator *locator)
 {
 	const size_t start = out->size;
 	struct locator_block *blocks = calloc((size_t)locator->block_count + 1, sizeof(*blocks));
+	uint32_t name_bytes;
 	struct hash check;
 
 	if (!blocks) {
@@ -101,8 +105,10 @@ void locator_encode(struct buffer *out, const struct locator *locator)
 	}
 	if (locator->block_count > 0)
 		memcpy(blocks, locator->blocks, locator->block_count * sizeof(*blocks));
+	qsort(blocks, locator->block_count, sizeof(*blocks), compare_pages);
+	name_bytes = find_name_bytes(blocks, locator->block_count);
 	qsort(blocks, locator->block_count, sizeof(*blocks), compare_places);
-	put_tables(out, locator, blocks);
+	put_tables(out, locator, blocks, name_bytes);
 	free(blocks);
 	if (out->error)
 		return;
@@ -184,12 +190,6 @@ static int read_blocks(struct reader *reader, struct locator *locator)
 			return -EBADMSG;
 	}
 	return 0;
-}
-
-static int compare_pages(const void *a, const void *b)
-{
-	return hash_compare(((const struct locator_block *)a)->page,
-			    ((const struct locator_block *)b)->page);
 }
 
 static int read_tables(struct reader *reader, struct locator *locator, uint32_t run_count)

@@ -31,11 +31,11 @@ struct locator_block {
 struct locator {
 	uint32_t pack_count, block_count;
 	struct hash *packs;           /* owned */
-	struct locator_block *blocks; /* owned; sorted by page */
+	struct locator_block *blocks; /* owned; decoded ones are sorted by page */
 	uint32_t name_bytes;          /* that pages that were read are told apart by */
 };
 
-/* Appends the file with its checksum. Blocks must be sorted by page. Failures are out->error, also
+/* Appends the file with its checksum. Blocks may be in any order. Failures are out->error, also
  * -ENOMEM. */
 void locator_encode(struct buffer *out, const struct locator *locator);
 /* Copies what it needs from file. The caller ends *out with locator_finish(); it is zeroed on

@@ -203,12 +203,6 @@ static int look_for_packs_before(struct packer *packer)
 	return 0;
 }
 
-static int compare_blocks(const void *a, const void *b)
-{
-	return hash_compare(((const struct locator_block *)a)->page,
-			    ((const struct locator_block *)b)->page);
-}
-
 /* Numbers the packs: first the reused old ones in their order, then the new ones. */
 static int make_locator(struct packer *packer, struct locator *locator)
 {
@@ -240,7 +234,6 @@ static int make_locator(struct packer *packer, struct locator *locator)
 	free(number);
 	packer->result->packs_reused = reused;
 	locator->pack_count = reused + packer->pack_count;
-	qsort(packer->blocks, packer->block_count, sizeof(*packer->blocks), compare_blocks);
 	locator->block_count = packer->block_count;
 	locator->blocks = packer->blocks;
 	return 0;
