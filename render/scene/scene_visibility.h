@@ -8,11 +8,12 @@
  * Returns whether anything was drawn for it. */
 bool scene_take_visibility(struct scene *scene, bool moved);
 
-/* Keeps the listed pieces as scene->counted; false: without memory for it. */
-bool scene_keep_pieces(struct scene *scene);
 /* The same in steps. Begins a pass of the listed pieces in the view of the frame, beside_m as
  * visibility_begin has it; false: without memory for it. */
 bool scene_begin_visibility(struct scene *scene, float beside_m);
+/* Copies the listed pieces to scene->counted alone, for a picture without a pass; false: without
+ * memory for it. */
+bool scene_keep_pieces(struct scene *scene);
 /* Draws those of scene->counted from `from` to below `to`, in the pass's target. */
 void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to);
 /* Counts what the pass that was read back shows: pixels of pieces and patches; moves probes. */
