@@ -103,6 +103,10 @@ int image_warp_begin(struct image_warp *warp, struct image_warp_reference *refer
 	if (rc == 0 && !warp->depths.framebuffer)
 		rc = gl_target_create_flat(&warp->depths, IMAGE_WARP_STEP * IMAGE_WARP_ACROSS,
 					   IMAGE_WARP_STEP * IMAGE_WARP_UP);
+	if (rc == 0 && !warp->pixels) {
+		warp->pixels = malloc(4 * IMAGE_WARP_DEPTHS);
+		rc = warp->pixels ? 0 : -ENOMEM;
+	}
 	if (rc < 0)
 		return rc;
 	if (picture->framebuffer && picture->width_px == width_px &&
@@ -129,6 +133,8 @@ void image_warp_finish(struct image_warp *warp)
 	if (warp->depth_program)
 		glDeleteProgram(warp->depth_program);
 	gl_target_destroy(&warp->depths);
+	free(warp->pixels);
+	warp->pixels = NULL;
 	warp->program = warp->depth_program = 0;
 }
 
@@ -240,10 +246,7 @@ void image_warp_take_depths(struct image_warp_reference *reference, const uint8_
 int image_warp_read_depths(struct image_warp *warp, struct image_warp_reference *reference)
 {
 	const struct view *view = &reference->view;
-	uint8_t *depths = malloc(4 * IMAGE_WARP_DEPTHS);
 	float right[2], up[2];
-	if (!depths)
-		return -ENOMEM;
 	clip_place(right, view, view->right);
 	clip_place(up, view, view->up);
 	gl_target_bind(&warp->depths);
@@ -259,11 +262,10 @@ int image_warp_read_depths(struct image_warp *warp, struct image_warp_reference 
 	glEnable(GL_DEPTH_TEST);
 	glPixelStorei(GL_PACK_ALIGNMENT, 4);
 	glReadPixels(0, 0, warp->depths.width_px, warp->depths.height_px, GL_RGBA, GL_UNSIGNED_BYTE,
-		     depths);
+		     warp->pixels);
 	const int rc = gl_check("reading the depths of a picture");
 	if (rc == 0)
-		image_warp_take_depths(reference, depths);
-	free(depths);
+		image_warp_take_depths(reference, warp->pixels);
 	return rc;
 }
 

@@ -40,6 +40,7 @@ struct image_warp {
 	GLuint depth_program;    /* likewise */
 	GLint axes;              /* its uniform */
 	struct gl_target depths; /* what is read of a picture's */
+	uint8_t *pixels;         /* of it, as read; owned */
 	struct image_warp_point point[IMAGE_WARP_POINTS];
 	uint16_t index[IMAGE_WARP_INDICES];
 };
@@ -47,11 +48,11 @@ struct image_warp {
 /* Returns whether the driver can do it: textures of depths, and fragments with highp. */
 bool image_warp_is_supported(void);
 /* Makes the picture's target of that size, unless it has it, and binds it. The first call also
- * builds the programs. As gl_program_build and gl_target_create. */
+ * builds the programs. As gl_program_build and gl_target_create, and -ENOMEM. */
 must_check int image_warp_begin(struct image_warp *warp, struct image_warp_reference *reference,
 				int width_px, int height_px);
 /* Takes the depths of the grid from those that the picture was drawn with. Waits for the GPU.
- * -ENOMEM, or as gl_check; then they are what they were. */
+ * As gl_check; then they are what they were. */
 must_check int image_warp_read_depths(struct image_warp *warp,
 				      struct image_warp_reference *reference);
 /* The same from IMAGE_WARP_DEPTHS depths in memory, in the view's rows, upwards; each as the depth
