@@ -15,10 +15,11 @@ enum {
 };
 
 /* A load is the time of a frame as a share of its target. Between the two nothing changes. */
-static const float load_low = 0.85f, load_high = 1.0f, load_goal = 0.9f;
-/* The level's change for each unit of load too much, its largest fall, and its rise. A rise adds at
- * most an eighth to a load, so it never leads from below the dead band to above it. */
-static const float gain = 0.35f, fall_most = 0.4f, rise = 0.04f;
+static const float load_low = 0.92f, load_high = 1.0f, load_goal = 0.95f;
+/* The level's change for each unit of load above or below the goal, and the largest fall. A rise
+ * adds to a load at most what it is below the goal, so it never leads from below the dead band to
+ * above it. */
+static const float gain = 0.35f, fall_most = 0.4f;
 /* Below this level, or with such a load, a lower rate of frames harms less than a still smaller
  * picture. */
 static const float level_of_rate = 0.7f, load_of_rate = 1.5f;
@@ -66,7 +67,19 @@ static bool may_slow_down(const struct governor *governor)
 static void be_quiet(struct governor *governor)
 {
 	governor->quiet_us = 0;
-	governor->most = 0;
+	governor->most[0] = governor->most[1] = 0;
+}
+
+/* Returns the largest load of the quiet time but one: a single frame may have had more to do. */
+static float most(const struct governor *governor)
+{
+	return governor->most[1];
+}
+
+static void note_load(struct governor *governor, float load)
+{
+	governor->most[1] = fmaxf(governor->most[1], fminf(load, governor->most[0]));
+	governor->most[0] = fmaxf(governor->most[0], load);
 }
 
 /* Two late frames in a row count, because one may have had more to load. */
@@ -91,9 +104,9 @@ static void come_back(struct governor *governor)
 {
 	const float divisor = (float)governor->divisor;
 	if (governor->level < 1) {
-		governor->level = fminf(governor->level + rise, 1);
+		governor->level = fminf(governor->level + gain * (load_goal - most(governor)), 1);
 		governor->risen_us = 0;
-	} else if (governor->divisor > 1 && governor->most * divisor < load_low * (divisor - 1)) {
+	} else if (governor->divisor > 1 && most(governor) * divisor < load_low * (divisor - 1)) {
 		governor->divisor--;
 		governor->risen_us = 0;
 	}
@@ -118,17 +131,12 @@ void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangl
 	governor->quiet_us += passed_us;
 	governor->risen_us += passed_us;
 	governor->held_us += passed_us;
-	governor->most = fmaxf(governor->most, load);
-	if (load > load_high) {
-		const float both = fminf(load, governor->over);
-		governor->over = load;
-		if (both > 0)
-			fall(governor, both);
-		be_quiet(governor);
-		return;
-	}
-	governor->over = 0;
-	if (governor->most > load_low)
+	note_load(governor, load);
+	const float both = fminf(load, governor->over);
+	governor->over = load > load_high ? load : 0;
+	if (both > 0)
+		fall(governor, both);
+	if (both > 0 || most(governor) > load_low)
 		be_quiet(governor);
 	if (governor->held_us > FORGET_US && governor->patience_us > PATIENCE_LEAST_US) {
 		governor->patience_us /= 2;

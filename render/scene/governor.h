@@ -27,7 +27,7 @@ struct governor {
 	uint32_t whole;   /* triangles of the last frame in which they were not limited */
 	float over;       /* load of the last frame, if it was too much; else 0 */
 	int64_t quiet_us; /* time of moving frames since the level last changed or one was late */
-	float most;       /* largest load in that time */
+	float most[2];    /* largest loads in that time */
 	int64_t patience_us; /* how long it must be quiet before the level rises */
 	int64_t risen_us;    /* time of moving frames since the level last rose */
 	int64_t held_us;     /* since it last fell */

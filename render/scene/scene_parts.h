@@ -81,13 +81,14 @@ struct scene_references {
 	bool has_shown;
 	bool is_begun;            /* the other one is being drawn */
 	enum reference_kind kind; /* of it */
-	bool is_read, is_counted; /* its visibility pass was, or it has none */
+	bool is_counted;          /* its visibility pass was, or it has none */
 	uint32_t since_pass;      /* pictures since one had a visibility pass */
 	float scale;              /* of it, as scene_effort has it */
 	uint32_t since_depth;     /* frames since one was left to depths of faces */
 	bool is_kept;             /* the one that is shown next was drawn at rest, for this view */
 	uint32_t numbered;        /* of its pieces, the first that are in the pass */
-	float cost;               /* of which slices are shares, in triangles of the pass */
+	float cost;               /* of it with a pass, in triangles of one */
+	float part;               /* what of it is drawn in a frame, in the same */
 	struct scene_slice slice; /* of the picture */
 	/* How the eye moves, in metres and parts of a direction for each millisecond. */
 	float eye_speed[3], turn_speed[3];

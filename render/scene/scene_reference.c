@@ -12,14 +12,14 @@
 #include "render/scene/scene_scenery.h"
 #include "render/scene/scene_visibility.h"
 
-/* Frames between two that renew depths of faces, and between two where some are missing. */
-enum { DEPTH_FRAMES = 4, MISSING_FRAMES = 2 };
+/* Frames between two that draw depths of faces where some are of an older cut, and where some are
+ * missing. */
+enum { OUTDATED_FRAMES = 4, MISSING_FRAMES = 2 };
 /* Pictures without a visibility pass between two with one. */
 enum { PASS_PICTURES = 4 };
 
-/* What reading a pass back and what counting it takes, in triangles of it. */
-static const float reading_cost = 0.3f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
-static const float counting_cost = 0.5f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
+/* What reading a pass back and counting it takes, in triangles of it. */
+static const float counting_cost = 0.3f * VISIBILITY_WIDTH * VISIBILITY_HEIGHT;
 /* Its field of view is so much wider, for what the eye turns to. */
 static const float wider = 1.06f;
 /* It is drawn for the time when it is shown first, but not for later than this, nor for farther
@@ -29,8 +29,10 @@ static const float lead_most_ms = 300, lead_most_share = 0.4f, lead_hurry_share 
 /* For an eye that will be out of reach within about this time there are small pictures. They have
  * this part of the scale, since it is too fast to see details; but this scale at least. This share
  * of one is drawn in each frame. */
-static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.6f;
-/* How far off the last one is shown while a small one is being drawn. Farther away one is drawn at
+static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.5f;
+/* Of one that is not small and comes late, so much more is drawn in a frame. */
+static const float late_parts = 2;
+/* How far off the last one is shown while another is being drawn. Farther away one is drawn at
  * once, for this share of the usual time ahead: it is shown already in this frame. */
 static const float off_most = 3, catch_up_share = 0.5f;
 /* The eye's speed is that of about so long: fingers tremble. */
@@ -128,20 +130,25 @@ static struct image_warp_reference *coming(struct scene *scene)
 	return &scene->references.of[1 - scene->references.shown];
 }
 
-/* Finds what a slice of the whole may cost: of a picture with a pass even if it has none, so that
- * all slices take equally long. */
+/* Finds what the whole costs, and what of it is drawn in each frame: equal slices, of which none is
+ * more than the share of a picture with a pass, even if it has none. */
 static void sum_costs(struct scene *scene, float picture_px)
 {
 	struct scene_references *r = &scene->references;
-	const bool has_pass = r->kind != REFERENCE_SMALL;
-	r->cost = has_pass ? reading_cost + counting_cost : 0;
+	const bool has_pass = !r->is_counted;
+	float pass = counting_cost, picture = 0;
 	for (uint32_t i = 0; i < scene->counted_all; i++) {
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
 			&scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
-		r->cost += has_pass ? (float)piece->triangle_count : 0;
-		r->cost += scene_piece_cost(scene, v, 1, picture_px);
+		pass += (float)piece->triangle_count;
+		picture += scene_piece_cost(scene, v, 1, picture_px);
 	}
+	const float whole = has_pass ? pass + picture : picture;
+	const bool is_small = r->kind == REFERENCE_SMALL;
+	r->cost = is_small ? picture : pass + picture;
+	const float share = is_small ? fmaxf(scene->used.share, hurry_share) : scene->used.share;
+	r->part = whole / ceilf(whole / (share * r->cost));
 }
 
 /* Returns what the picture is drawn with. */
@@ -171,7 +178,7 @@ static bool begin(struct scene *scene, float ahead_ms)
 	}
 	scene_begin_picture(scene);
 	scene_list_pieces(scene);
-	r->is_read = r->is_counted = r->kind != REFERENCE_WITH_PASS;
+	r->is_counted = r->kind != REFERENCE_WITH_PASS;
 	const bool is_kept = r->is_counted
 				     ? scene_keep_pieces(scene)
 				     : scene_begin_visibility(
@@ -208,19 +215,13 @@ static float draw_numbers(struct scene *scene, float cost)
 	return drawn;
 }
 
-/* Draws scenery into the pass and reads it back. */
-static void read_pass(struct scene *scene)
+/* Draws scenery into the pass, reads it back and counts it. */
+static void count_pass(struct scene *scene)
 {
 	visibility_resume(&scene->visibility, &scene->root);
 	scene_draw_scenery_depths(scene);
-	scene->references.is_read = true;
-	if (visibility_end(&scene->visibility) < 0)
-		scene->references.is_counted = true; /* there is nothing to count */
-}
-
-static void count_pass(struct scene *scene)
-{
-	scene_count_visibility(scene);
+	if (visibility_end(&scene->visibility) == 0)
+		scene_count_visibility(scene);
 	scene->references.is_counted = true;
 	scene->references.since_pass = 0;
 }
@@ -257,34 +258,38 @@ static void draw_pieces(struct scene *scene, float cost)
 		end_picture(scene, &frame);
 }
 
-/* Returns whether a face that is used has no depths. */
-static bool depth_is_missing(const struct scene *scene)
+/* Returns after how many frames one is left to depths of faces. */
+static uint32_t frames_between_depths(const struct scene *scene)
 {
+	uint32_t frames = UINT32_MAX;
 	for (int i = 0; i < (int)scene->tiles.face_count; i++) {
 		const struct tiles_face *face = &scene->tiles.faces[i];
-		if (face->used && face->stamp == scene->tiles.stamp &&
-		    !depth_ready(&scene->depth, i, face->key))
-			return true;
+		if (!face->used || face->stamp != scene->tiles.stamp)
+			continue;
+		if (!depth_ready(&scene->depth, i, face->key))
+			return MISSING_FRAMES;
+		if (scene->depth.face[i].cut != scene->cut_signature)
+			frames = OUTDATED_FRAMES;
 	}
-	return false;
+	return frames;
 }
 
 /* Goes on with the picture that was begun until the cost is reached. */
 static void go_on(struct scene *scene, float cost)
 {
 	struct scene_references *r = &scene->references;
+	float left = cost;
 	if (!r->is_counted && r->numbered < scene->counted_count)
-		cost -= draw_numbers(scene, cost);
-	if (!r->is_counted && r->numbered == scene->counted_count && !r->is_read && cost > 0) {
-		read_pass(scene);
-		cost -= reading_cost;
-	}
-	if (!r->is_counted && r->is_read && cost > 0) {
+		left -= draw_numbers(scene, left);
+	/* reading waits for what was drawn, so it has a frame of its own rather than the end of one
+	 */
+	if (!r->is_counted && r->numbered == scene->counted_count &&
+	    (left >= counting_cost || left == cost)) {
 		count_pass(scene);
-		cost -= counting_cost;
+		left -= counting_cost;
 	}
-	if (r->is_counted && cost > 0)
-		draw_pieces(scene, cost);
+	if (r->is_counted && left > 0)
+		draw_pieces(scene, left);
 }
 
 static enum reference_kind choose_kind(const struct scene *scene)
@@ -316,7 +321,7 @@ bool scene_build_reference(struct scene *scene)
 	if (off > off_most)
 		return catch_up(scene);
 	if (is_near && !(r->is_begun && r->kind == REFERENCE_SMALL) &&
-	    r->since_depth > (depth_is_missing(scene) ? MISSING_FRAMES : DEPTH_FRAMES)) {
+	    r->since_depth > frames_between_depths(scene)) {
 		r->since_depth = 0;
 		return false;
 	}
@@ -328,10 +333,7 @@ bool scene_build_reference(struct scene *scene)
 		if (!begin(scene, lead_ms(scene)))
 			return false;
 	}
-	const float share = is_near && r->kind != REFERENCE_SMALL
-				    ? scene->used.share
-				    : fmaxf(scene->used.share, hurry_share);
-	go_on(scene, share * r->cost);
+	go_on(scene, is_near || r->kind == REFERENCE_SMALL ? r->part : late_parts * r->part);
 	return true;
 }
 
@@ -360,8 +362,7 @@ bool scene_show_reference(struct scene *scene, const struct gl_place *place)
 	struct scene_references *r = &scene->references;
 	const struct view *view = &scene->view;
 	struct view small;
-	const float most = r->kind == REFERENCE_SMALL ? off_most : 1;
-	if (!scene_uses_references(scene) || find_off(scene, view) > most)
+	if (!scene_uses_references(scene) || find_off(scene, view) > off_most)
 		return false;
 	enlargement_view(&small, view, scene->used.scale);
 	if (enlargement_begin(&scene->enlargement, &small) < 0)

@@ -9,7 +9,7 @@
 
 enum { FRAMES_MAX = 3000, PAUSE_US = 10000 };
 /* The share with which a picture takes several frames. */
-static const float slices = 0.04f;
+static const float slices = 0.15f;
 static const float fast_m = 1.2f;
 
 static struct little_release *release; /* made once for all tests */
@@ -155,12 +155,12 @@ static void a_fast_eye_has_small_pictures(void **state)
 	(void)state;
 	settle();
 	aside_m = reach_first();
-	for (int i = 0; i < 10; i++) {
+	for (int i = 0; i < 12; i++) {
 		shown = r->shown;
 		aside_m += fast_m;
 		draw_aside(aside_m, 0.05f, NULL);
 		pictures += r->shown != shown;
-		if (i < 4)
+		if (i < 6)
 			continue;
 		assert_int_equal(r->kind, REFERENCE_SMALL);
 		CHECK(image_warp_off(&r->of[r->shown], &stage.scene->view) < 2);
