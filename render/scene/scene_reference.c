@@ -28,8 +28,9 @@ static const float wider = 1.06f;
 static const float lead_most_ms = 300, lead_most_share = 0.4f, lead_hurry_share = 1;
 /* For an eye that will be out of reach within about this time there are small pictures. They have
  * this part of the scale, since it is too fast to see details; but this scale at least. This share
- * of one is drawn in each frame. */
-static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.5f;
+ * of one is drawn in each frame, for a time at least so far ahead. */
+static const float hurry_ms = 100, hurry_part = 0.5f, hurry_least = 0.25f, hurry_share = 0.5f,
+		   hurry_lead_ms = 50;
 /* Of one that is not small and comes late, so much more is drawn in a frame. */
 static const float late_parts = 2;
 /* How far off the last one is shown while another is being drawn. Farther away one is drawn at
@@ -97,6 +98,8 @@ static float lead_ms(const struct scene *scene)
 	const float share = r->kind == REFERENCE_SMALL ? lead_hurry_share : lead_most_share;
 	const float most_m = share * r->of[r->shown].nearest_m;
 	float ms = fminf(r->took_ms[r->kind], lead_most_ms);
+	if (r->kind == REFERENCE_SMALL)
+		ms = fmaxf(ms, hurry_lead_ms);
 	if (speed * ms > most_m)
 		ms = most_m / speed;
 	return ms;
@@ -301,10 +304,17 @@ static enum reference_kind choose_kind(const struct scene *scene)
 	return r->since_pass < PASS_PICTURES ? REFERENCE_PLAIN : REFERENCE_WITH_PASS;
 }
 
-/* Draws a small one at once, because the last one shows too little of what the eye sees. */
+/* Draws a small one at once, because the last one shows too little of what the eye sees: what is
+ * left of the one that was begun, if that is enough. */
 static bool catch_up(struct scene *scene)
 {
-	scene->references.kind = REFERENCE_SMALL;
+	struct scene_references *r = &scene->references;
+	if (r->is_begun && r->kind == REFERENCE_SMALL) {
+		go_on(scene, INFINITY);
+		if (find_off(scene, &scene->view) <= off_most)
+			return true;
+	}
+	r->kind = REFERENCE_SMALL;
 	if (!begin(scene, catch_up_share * lead_ms(scene)))
 		return false;
 	go_on(scene, INFINITY);
