@@ -89,17 +89,15 @@ static float find_off(const struct scene *scene, const struct view *view)
 /* ---- the view of the next one */
 
 /* Returns in how many milliseconds the next picture is shown first, if it takes as long as the last
- * one of its kind. A lead to the middle of the time in which it is shown gave no better pictures
- * (docs/figures.md). */
-static float lead_ms(const struct scene *scene)
+ * one of its kind, but at least so long. A lead to the middle of the time in which it is shown gave
+ * no better pictures (docs/figures.md). */
+static float lead_ms(const struct scene *scene, float least_ms)
 {
 	const struct scene_references *r = &scene->references;
 	const float speed = sqrtf(vec_dot(r->eye_speed, r->eye_speed));
 	const float share = r->kind == REFERENCE_SMALL ? lead_hurry_share : lead_most_share;
 	const float most_m = share * r->of[r->shown].nearest_m;
-	float ms = fminf(r->took_ms[r->kind], lead_most_ms);
-	if (r->kind == REFERENCE_SMALL)
-		ms = fmaxf(ms, hurry_lead_ms);
+	float ms = fminf(fmaxf(r->took_ms[r->kind], least_ms), lead_most_ms);
 	if (speed * ms > most_m)
 		ms = most_m / speed;
 	return ms;
@@ -315,7 +313,7 @@ static bool catch_up(struct scene *scene)
 			return true;
 	}
 	r->kind = REFERENCE_SMALL;
-	if (!begin(scene, catch_up_share * lead_ms(scene)))
+	if (!begin(scene, catch_up_share * lead_ms(scene, 0)))
 		return false;
 	go_on(scene, INFINITY);
 	return true;
@@ -340,7 +338,8 @@ bool scene_build_reference(struct scene *scene)
 		r->is_begun = false;
 	if (!r->is_begun) {
 		r->kind = choose_kind(scene);
-		if (!begin(scene, lead_ms(scene)))
+		const float least_ms = r->kind == REFERENCE_SMALL ? hurry_lead_ms : 0;
+		if (!begin(scene, lead_ms(scene, least_ms)))
 			return false;
 	}
 	go_on(scene, is_near || r->kind == REFERENCE_SMALL ? r->part : late_parts * r->part);
