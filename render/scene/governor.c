@@ -128,7 +128,7 @@ void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangl
 	governor->has_moved = governor->has_moved || triangles > 0;
 	if (!limits_triangles(governor))
 		governor->whole = triangles;
-	governor->quiet_us += passed_us;
+	governor->quiet_us += load > load_high ? 0 : passed_us;
 	governor->risen_us += passed_us;
 	governor->held_us += passed_us;
 	note_load(governor, load);

@@ -137,7 +137,7 @@ static void sum_costs(struct scene *scene, float picture_px)
 {
 	struct scene_references *r = &scene->references;
 	const bool has_pass = !r->is_counted;
-	float pass = counting_cost, picture = 0;
+	float pass = counting_cost, picture = 1; /* one of nothing has to be drawn too */
 	for (uint32_t i = 0; i < scene->counted_all; i++) {
 		const struct visible_piece *v = &scene->counted[i];
 		const struct piece *piece =
@@ -282,8 +282,7 @@ static void go_on(struct scene *scene, float cost)
 	float left = cost;
 	if (!r->is_counted && r->numbered < scene->counted_count)
 		left -= draw_numbers(scene, left);
-	/* reading waits for what was drawn, so it has a frame of its own rather than the end of one
-	 */
+	/* reading waits for what was drawn, so it comes at the begin of a frame */
 	if (!r->is_counted && r->numbered == scene->counted_count &&
 	    (left >= counting_cost || left == cost)) {
 		count_pass(scene);

@@ -199,6 +199,21 @@ static void under_a_steady_load_nothing_breathes(void **state)
 	}
 }
 
+/* However long it was: its time is none in which frames were in time. */
+static void one_long_frame_raises_nothing(void **state)
+{
+	struct visit visit;
+	(void)state;
+	begin(&visit, weak);
+	for (int i = 0; i < 3; i++)
+		governor_note(&visit.governor, 40000, WHOLE);
+	governor_note(&visit.governor, 10000, WHOLE);
+	const float before = visit.governor.level;
+	CHECK(before < 1);
+	governor_note(&visit.governor, 2000000, WHOLE);
+	CHECK(visit.governor.level <= before);
+}
+
 static void one_late_frame_changes_nothing(void **state)
 {
 	struct visit visit;
@@ -235,6 +250,7 @@ int main(void)
 		cmocka_unit_test(a_slowing_clock_is_followed_without_late_frames),
 		cmocka_unit_test(under_a_steady_load_nothing_breathes),
 		cmocka_unit_test(one_late_frame_changes_nothing),
+		cmocka_unit_test(one_long_frame_raises_nothing),
 		cmocka_unit_test(a_bound_of_full_size_governs_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

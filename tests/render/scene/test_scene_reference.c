@@ -173,6 +173,31 @@ static void a_fast_eye_has_small_pictures(void **state)
 	}
 }
 
+/* Where nothing of the model is in sight, pictures of the sky follow each other. */
+static void an_eye_that_sees_nothing_has_pictures(void **state)
+{
+	const struct scene_references *r = &stage.scene->references;
+	struct camera camera = usual_camera;
+	int shown, pictures = 0;
+
+	(void)state;
+	settle();
+	reach_first();
+	for (int k = 0; k < 3; k++)
+		camera.target_m[k] = 2 * camera.eye_m[k] - camera.target_m[k];
+	for (int i = 0; i < 30; i++) {
+		shown = r->shown;
+		camera.eye_m[0] += 0.01f;
+		camera.target_m[0] += 0.01f;
+		spend(slices, PLAN_ENTRIES);
+		usleep(PAUSE_US);
+		draw_stage(&stage, &camera);
+		pictures += i > 10 && r->shown != shown;
+	}
+	assert_int_equal(stage.scene->counted_all, 0);
+	CHECK(pictures > 3);
+}
+
 /* What a motion begins with is there before it begins, where it must be: it takes memory. */
 static void a_resting_eye_keeps_a_picture_for_the_next_motion(void **state)
 {
@@ -345,6 +370,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_warped_picture_is_that_of_the_eye, raise_turned,
 						strike),
 		cmocka_unit_test_setup_teardown(a_fast_eye_has_small_pictures, raise, strike),
+		cmocka_unit_test_setup_teardown(an_eye_that_sees_nothing_has_pictures, raise,
+						strike),
 		cmocka_unit_test_setup_teardown(a_resting_eye_keeps_a_picture_for_the_next_motion,
 						raise, strike),
 		cmocka_unit_test_setup_teardown(a_picture_for_several_frames_has_no_faces_that_fade,
