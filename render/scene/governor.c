@@ -128,12 +128,13 @@ void governor_note(struct governor *governor, int64_t spent_us, uint32_t triangl
 	governor->has_moved = governor->has_moved || triangles > 0;
 	if (!limits_triangles(governor))
 		governor->whole = triangles;
-	governor->quiet_us += load > load_high ? 0 : passed_us;
+	governor->quiet_us += load > load_high ? 0 : target_us;
 	governor->risen_us += passed_us;
 	governor->held_us += passed_us;
 	note_load(governor, load);
-	const float both = fminf(load, governor->over);
-	governor->over = load > load_high ? load : 0;
+	const float over = load > load_high ? load : 0;
+	const float both = fminf(over, governor->over);
+	governor->over = over;
 	if (both > 0)
 		fall(governor, both);
 	if (both > 0 || most(governor) > load_low)
