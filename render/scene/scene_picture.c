@@ -8,14 +8,13 @@
 #include "render/scene/scene_plan.h"
 #include "render/scene/scene_scenery.h"
 #include "render/scene/scene_stream.h"
+#include "render/scene/scene_visibility.h"
 
 enum { NEW_BUDGET_US = 30000 }; /* for the first triangles with a program */
 
 /* What a triangle and a seen pixel of a face take of a picture, in triangles of the visibility
  * pass, by two cores without a GPU. */
 static const float triangle_cost = 1.25f, fragment_cost = 0.27f;
-/* Of a piece that no pass has counted, this part of its sphere's picture is seen. */
-static const float seen_part = 0.125f;
 
 /* A range of triangles of the bound patch that is not drawn yet: consecutive pieces that need no
  * uniforms of their own are drawn together. */
@@ -71,10 +70,9 @@ float scene_piece_cost(const struct scene *scene, const struct visible_piece *v,
 {
 	const struct geometry_patch *patch = &scene->geometry.patches[v->patch];
 	const struct piece_state *state = &patch->pieces[v->piece];
-	const float seen_px = state->counted ? state->seen_px : seen_part * v->pixels;
 	return triangle_cost * (float)patch->content.bvh.pieces[v->piece].triangle_count +
-	       fragment_cost * (float)(faces > 1 ? faces : 1) * seen_px * picture_px /
-		       scene->view.picture_px;
+	       fragment_cost * (float)(faces > 1 ? faces : 1) * scene_seen_px(state, v) *
+		       picture_px / scene->view.picture_px;
 }
 
 /* Draws pieces of the slice's program until the cost is reached. Returns that of those it drew. */

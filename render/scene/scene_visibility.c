@@ -20,6 +20,14 @@ static const float moved_m = 0.05f, turned = 0.01f;
 /* A visible point farther than this share of a piece's radius from every probe deserves a probe. */
 static const float stray_share = 0.2f;
 
+/* The rest of an uncounted piece's sphere is beside it, or hidden. */
+static const float seen_share = 0.125f;
+
+float scene_seen_px(const struct piece_state *state, const struct visible_piece *v)
+{
+	return state->counted ? state->seen_px : seen_share * v->pixels;
+}
+
 static bool is_due(const struct scene *scene, bool moved)
 {
 	if (scene->visibility_us == 0 || scene->visibility_cut != scene->cut_signature)

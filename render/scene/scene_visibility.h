@@ -16,6 +16,9 @@ bool scene_begin_visibility(struct scene *scene, float beside_m);
 bool scene_keep_pieces(struct scene *scene);
 /* Draws those of scene->counted from `from` to below `to`, in the pass's target. */
 void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to);
+/* Returns how many pixels of the screen a listed piece is seen at: those that the last pass
+ * counted, or of one that no pass has counted an estimate. */
+float scene_seen_px(const struct piece_state *state, const struct visible_piece *v);
 /* Counts what the pass that was read back shows: pixels of pieces and patches; moves probes. */
 void scene_count_visibility(struct scene *scene);
 

@@ -14,6 +14,7 @@
 #include "render/scene/scene_labels.h"
 #include "render/scene/scene_objects.h"
 #include "render/scene/scene_stream.h"
+#include "render/scene/scene_visibility.h"
 
 /* A coarse tile, two levels up, stands in for 16 fine ones: it comes first where no image is shown
  * yet. */
@@ -353,7 +354,7 @@ static void add_pieces(const struct scene *scene, struct gains *gains)
 		const struct piece_state *state =
 			&scene->geometry.patches[v->patch].pieces[v->piece];
 		const struct plan_choice *choice = &state->choice;
-		float pixels = state->counted ? state->seen_px : v->pixels / 8;
+		float pixels = scene_seen_px(state, v);
 		for (uint32_t k = 0; k < choice->want_count && pixels > 0; k++)
 			add_want(scene, gains, &choice->want[k], choice->want[k].gain * pixels,
 				 choice->entry_count == 0);
