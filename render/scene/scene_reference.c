@@ -131,12 +131,12 @@ static struct image_warp_reference *coming(struct scene *scene)
 	return &scene->references.of[1 - scene->references.shown];
 }
 
-/* Finds what the whole costs, and what of it is drawn in each frame: equal slices, of which none is
- * more than the share of a picture with a pass, even if it has none. */
+/* Finds what the picture costs, and what of it is drawn in each frame: equal slices, of which none
+ * is more than the share of a picture with a pass, whether it has one or not, or of a small one
+ * without. */
 static void sum_costs(struct scene *scene, float picture_px)
 {
 	struct scene_references *r = &scene->references;
-	const bool has_pass = !r->is_counted;
 	float pass = counting_cost, picture = 1; /* one of nothing has to be drawn too */
 	for (uint32_t i = 0; i < scene->counted_all; i++) {
 		const struct visible_piece *v = &scene->counted[i];
@@ -145,11 +145,12 @@ static void sum_costs(struct scene *scene, float picture_px)
 		pass += (float)piece->triangle_count;
 		picture += scene_piece_cost(scene, v, 1, picture_px);
 	}
-	const float whole = has_pass ? pass + picture : picture;
-	const bool is_small = r->kind == REFERENCE_SMALL;
-	r->cost = is_small ? picture : pass + picture;
-	const float share = is_small ? fmaxf(scene->used.share, hurry_share) : scene->used.share;
-	r->part = whole / ceilf(whole / (share * r->cost));
+	r->cost = pass + picture;
+	const float share = scene->used.share;
+	const float whole = r->is_counted ? picture : r->cost;
+	const float most =
+		r->kind == REFERENCE_SMALL ? fmaxf(share, hurry_share) * picture : share * r->cost;
+	r->part = whole / ceilf(whole / most);
 }
 
 /* Returns what the picture is drawn with. */
@@ -279,12 +280,13 @@ static uint32_t frames_between_depths(const struct scene *scene)
 static void go_on(struct scene *scene, float cost)
 {
 	struct scene_references *r = &scene->references;
+	const bool was_numbered = r->numbered == scene->counted_count;
 	float left = cost;
-	if (!r->is_counted && r->numbered < scene->counted_count)
+	if (!r->is_counted && !was_numbered)
 		left -= draw_numbers(scene, left);
 	/* reading waits for what was drawn, so it comes at the begin of a frame */
 	if (!r->is_counted && r->numbered == scene->counted_count &&
-	    (left >= counting_cost || left == cost)) {
+	    (was_numbered || left >= counting_cost)) {
 		count_pass(scene);
 		left -= counting_cost;
 	}
