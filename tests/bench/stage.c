@@ -354,10 +354,28 @@ static void draw(struct stage *stage, const struct camera *camera, struct scene_
 	work_from_us = -1;
 	stage->wall_us = __real_clock_now_us() - wall_us;
 	stage->work_us = clock_thread_us() - work_us;
-	beside_us = process_us() - all_us - stage->work_us + stage->decoded_us;
+	beside_us = process_us() - all_us - stage->work_us;
 	stage->spent_us =
 		(int64_t)((float)(stage->work_us + beside_us / stage->cores) * stage->slowness);
-	stage->decoded_us = 0;
+}
+
+/* Lets workers decode for so long. Returns how long they did. */
+static int64_t decode(struct stage *stage, int64_t most_us)
+{
+	const int64_t us = stage->decoding_us < most_us ? stage->decoding_us : most_us;
+
+	stage->decoding_us -= us;
+	return us;
+}
+
+/* They do it where cores are idle, beside the drawing thread while its driver does nothing and
+ * until the next frame; before that half of the cores' time is theirs. */
+static void let_workers_decode(struct stage *stage)
+{
+	decode(stage, stage->work_us * (stage->cores - 1));
+	stage->spent_us += decode(stage, stage->spent_us * stage->cores) / stage->cores;
+	if (stage->options.frame_us > stage->spent_us)
+		decode(stage, (stage->options.frame_us - stage->spent_us) * stage->cores);
 }
 
 void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
@@ -366,8 +384,10 @@ void stage_frame(struct stage *stage, const struct camera *camera, struct scene_
 	int64_t work_us;
 
 	draw(stage, camera, out);
-	if (stage->options.work_clock)
+	if (stage->options.work_clock) {
+		let_workers_decode(stage);
 		virtual_us = began_us + stage->spent_us;
+	}
 	if (is_virtual) {
 		const int64_t next_us = began_us + stage->options.frame_us;
 
@@ -376,7 +396,7 @@ void stage_frame(struct stage *stage, const struct camera *camera, struct scene_
 	stage->passed_us = virtual_us - began_us;
 	work_us = clock_thread_us();
 	pass_link(stage);
-	stage->decoded_us = clock_thread_us() - work_us;
+	stage->decoding_us += clock_thread_us() - work_us;
 }
 
 int64_t stage_now_us(void)

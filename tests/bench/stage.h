@@ -63,12 +63,12 @@ struct stage {
 	int64_t work_us;                /* of this thread, for the last frame */
 	int64_t wall_us;                /* of the machine's clock, for the last frame */
 	/* With work_clock: what the last frame took. The drawing thread's processor time, and its
-	 * share of that of the driver's threads and of decoding, which run beside it. */
+	 * share of that of the driver's threads, and of decoding what decoding takes from them. */
 	int64_t spent_us;
-	int64_t passed_us;  /* of the stage's clock in the last frame */
-	int64_t decoded_us; /* time of decoding since then, of which the next frame has its share */
-	uint32_t cores;     /* with work_clock: that the process has; 2 from the start */
-	float slowness;     /* with work_clock: factor of all times; 1 from the start */
+	int64_t passed_us;   /* of the stage's clock in the last frame */
+	int64_t decoding_us; /* what workers still have to decode of what has come */
+	uint32_t cores;      /* with work_clock: that the process has; 2 from the start */
+	float slowness;      /* with work_clock: factor of all times; 1 from the start */
 	uint64_t bytes_most; /* nothing is sent for past them; UINT64_MAX from the start */
 };
 
