@@ -234,8 +234,14 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	}
 	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
-	bool counted = scene_uses_references(scene) ? scene_build_reference(scene)
-						    : scene_take_visibility(scene, moved);
+	/* where a picture takes long, the first one at rest comes at once: what it lacks is in the
+	 * next one */
+	const bool at_once = scene->still_frames == STILL_FRAMES + 1 && scene->effort.share < 1;
+	bool counted = false;
+	if (scene_uses_references(scene))
+		counted = scene_build_reference(scene);
+	else if (!at_once)
+		counted = scene_take_visibility(scene, moved);
 	scene_desire(scene);
 	if (scene->options.mode == SCENE_POLYGONS) {
 		scene->plans_are_stale = scene->depth_is_stale = false;
@@ -243,11 +249,11 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 		return;
 	}
 	keep_season(scene, moved, now_us);
-	scene_plan_pieces(scene, moved ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
-				       : PLAN_BUDGET_REST_US);
+	scene_plan_pieces(scene, moved || at_once ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
+						  : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, passed);
 	scene_step_backdrop(scene, passed);
-	if (moved && counted)
+	if ((moved && counted) || at_once)
 		/* beside the picture one further pass per frame is enough */
 		scene->depth_is_stale = true;
 	else

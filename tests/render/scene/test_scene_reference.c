@@ -344,6 +344,26 @@ static void a_picture_at_rest_is_left_for_a_touch(void **state)
 	CHECK(difference(stage.before, stage.seen) > 0);
 }
 
+/* The first picture at full size waits neither for a visibility pass nor for depths. */
+static void a_stop_shows_a_whole_picture_at_once(void **state)
+{
+	const struct scene *scene = stage.scene;
+	int64_t counted_us;
+	float aside_m;
+
+	(void)state;
+	settle();
+	aside_m = reach_first();
+	draw_aside(aside_m, slices, NULL); /* as those before: a slow finger */
+	CHECK(!scene->still.sum_is_seen);
+	counted_us = scene->visibility_us;
+	draw_aside(aside_m, slices, NULL);
+	CHECK(scene->still.sum_is_seen);
+	CHECK(scene->visibility_us == counted_us && stage.frame.depth_faces_drawn == 0);
+	draw_aside(aside_m, slices, NULL);
+	CHECK(scene->visibility_us != counted_us);
+}
+
 static void a_warped_picture_has_the_mark(void **state)
 {
 	static const struct scene_mark pillar = { .region = { .kind = REGION_BOX,
@@ -379,6 +399,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_picture_at_rest_is_left_for_a_touch, raise,
 						strike),
 		cmocka_unit_test_setup_teardown(a_jump_shows_nothing_of_the_old_place, raise,
+						strike),
+		cmocka_unit_test_setup_teardown(a_stop_shows_a_whole_picture_at_once, raise,
 						strike),
 		cmocka_unit_test_setup_teardown(a_warped_picture_has_the_mark, raise, strike),
 	};
