@@ -33,8 +33,7 @@
 
 enum {
 	REFRESH_US = 16667,
-	JUDGE_US = 250000,       /* between two judged moments of motion */
-	JUDGED_REST_US = 500000, /* of a rest these are all judged, and its last frame */
+	JUDGE_US = 250000, /* between two judged moments of motion */
 	FRAMES_MAX = 20000,
 	SECONDS_MAX = 600,
 };
@@ -225,10 +224,9 @@ static void play_rest(struct bench *bench, uint32_t leg, int64_t began_us, int64
 
 	for (int64_t now_us = from_us; now_us < until_us; now_us = next_refresh_us(began_us)) {
 		shot = shoot(bench, leg, began_us, &camera);
-		if (now_us < from_us + JUDGED_REST_US)
-			judge(bench, shot, moment, false);
+		judge(bench, shot, moment, false);
 	}
-	if (shot)
+	if (shot && bench->keeps)
 		judge(bench, shot, moment, true);
 }
 

@@ -263,10 +263,25 @@ static int64_t carry(struct stage *stage, int64_t now_us, uint32_t bytes)
 	return stage->link_free_us;
 }
 
+/* Sends for an object that a cache would have. Returns false if it has to wait. */
+static bool send_to_cache(struct stage *stage, const struct message_want *want, int64_t now_us)
+{
+	const map_key key = hash_key(want->hash);
+
+	if (map_get(&stage->asked, key) != MAP_NONE)
+		return true;
+	if (stage->flights == STAGE_IN_FLIGHT)
+		return false;
+	stage->flight[stage->flights++] =
+		(struct stage_flight){ .want = *want, .last = true, .due_us = now_us };
+	stage_must(map_set(&stage->asked, key, want->size), "memory");
+	return true;
+}
+
 /* Sends for an object, or for as many segments of it as fit into the turn. Returns false if more
  * would have to wait. */
-static bool send_for_object(struct stage *stage, const struct message_want *want, uint64_t turn,
-			    int64_t now_us)
+static bool send_over_line(struct stage *stage, const struct message_want *want, uint64_t turn,
+			   int64_t now_us)
 {
 	const map_key key = hash_key(want->hash);
 	const uint64_t known = map_get(&stage->asked, key);
@@ -282,9 +297,8 @@ static bool send_for_object(struct stage *stage, const struct message_want *want
 		if (stage->options.bits_a_second > 0 && ahead > 0 && ahead + flight.bytes > turn)
 			return false;
 		flight.due_us = now_us + stage->options.latency_us;
-		if (!was_had(stage, want->hash))
-			flight.line_bytes = bytes_on_line(stage, flight.bytes, turn);
-		if (stage->options.bits_a_second > 0 && flight.line_bytes > 0)
+		flight.line_bytes = bytes_on_line(stage, flight.bytes, turn);
+		if (stage->options.bits_a_second > 0)
 			flight.due_us = carry(stage, now_us, flight.line_bytes);
 		asked += flight.bytes;
 		flight.last = asked == want->size;
@@ -302,7 +316,9 @@ static void send_for(struct stage *stage, int64_t now_us)
 	const uint64_t turn = turn_bytes(stage);
 
 	for (size_t i = 0; i < count; i++)
-		if (!send_for_object(stage, &wants[i], turn, now_us))
+		if (!(was_had(stage, wants[i].hash)
+			      ? send_to_cache(stage, &wants[i], now_us)
+			      : send_over_line(stage, &wants[i], turn, now_us)))
 			return;
 }
 

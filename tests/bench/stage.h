@@ -38,7 +38,7 @@ struct stage_options {
 struct stage_flight {
 	struct message_want want;
 	uint32_t bytes;
-	uint32_t line_bytes; /* with what its transport adds; 0: a cache would have it */
+	uint32_t line_bytes; /* with what its transport adds; 0: a cache has it */
 	bool last;           /* of its object */
 	int64_t due_us;
 };
