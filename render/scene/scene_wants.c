@@ -318,9 +318,23 @@ static uint32_t gain_priority(const struct scene *scene, const struct gain *gain
 					 : plan_priority(gain->pixels, bytes + BYTES_BEHIND_PAGE);
 }
 
-/* Adds the tiles, from two levels up to the finest that is of use, of a part of the picture. */
+/* Returns whether the page of each face that the backdrop shows is here. */
+static bool knows_looks(const struct scene *scene)
+{
+	const struct scene_backdrop *backdrop = &scene->backdrop;
+	for (uint32_t i = 0; i < backdrop->look_count; i++) {
+		const enum repository_state state =
+			repository_face(&scene->repository, backdrop->looks[i].face, NULL, NULL);
+		if (state != REPOSITORY_READY && state != REPOSITORY_EMPTY)
+			return false;
+	}
+	return true;
+}
+
+/* Adds the tiles, from two levels up to the finest that is of use, of a part of the picture;
+ * without finer ones only the first of these levels. */
 static void add_look(const struct scene *scene, struct gains *gains,
-		     const struct backdrop_look *look, float pixels)
+		     const struct backdrop_look *look, float pixels, bool finer)
 {
 	const struct plan_want w = { .face = look->face,
 				     .level = look->level,
@@ -332,7 +346,8 @@ static void add_look(const struct scene *scene, struct gains *gains,
 			 false);
 		return;
 	}
-	for (level = level > before ? level : before + 1; level <= look->level; level++) {
+	const int finest = finer ? look->level : level;
+	for (level = level > before ? level : before + 1; level <= finest; level++) {
 		add_level(scene, gains, &w, (uint32_t)level,
 			  pixels * scene_backdrop_worth(scene, level, before));
 		before = level;
@@ -342,9 +357,11 @@ static void add_look(const struct scene *scene, struct gains *gains,
 static void add_backdrop(const struct scene *scene, struct gains *gains)
 {
 	const struct scene_backdrop *backdrop = &scene->backdrop;
+	/* or fine tiles of one face fill the line before the coarse ones of the next */
+	const bool finer = knows_looks(scene);
 	for (uint32_t i = 0; i < backdrop->look_count; i++)
 		add_look(scene, gains, &backdrop->looks[i],
-			 scene->view.picture_px / (float)backdrop->look_count);
+			 scene->view.picture_px / (float)backdrop->look_count, finer);
 }
 
 static void add_pieces(const struct scene *scene, struct gains *gains)
