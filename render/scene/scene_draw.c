@@ -25,7 +25,8 @@ enum {
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
 	SEASON_US = 1000000,     /* longest season of the tiles while the eye moves */
-	PASSED_MOST_MS = 100,    /* a long pause must not make fades jump */
+	FRAME_MOST_MS = 400,     /* fades are not slower where frames are */
+	PAUSE_MOST_MS = 100,     /* but a pause, in which nothing was drawn, makes nothing jump */
 	SHARE_PX_MAX = 320,      /* width of the picture from which image_share is counted */
 	DEPTH_TRIANGLES = 24000, /* of a face's depths in a frame, where frames take too long */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
@@ -213,9 +214,9 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 /* Returns the time since the last frame. */
 static float passed_ms(const struct scene *scene)
 {
-	return scene->frame_us
-		       ? fminf((float)(clock_now_us() - scene->frame_us) / 1000, PASSED_MOST_MS)
-		       : 0;
+	return scene->frame_us ? fminf((float)(clock_now_us() - scene->frame_us) / 1000,
+				       scene->is_still ? PAUSE_MOST_MS : FRAME_MOST_MS)
+			       : 0;
 }
 
 static void prepare(struct scene *scene, bool moved, float passed, struct scene_frame *out)
@@ -362,7 +363,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->tools_moved = false;
 	scene->still_frames = moved ? 0 : scene->still_frames + 1;
 	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;
-	scene_note_motion(scene, &view, passed);
+	scene_note_motion(scene, &view, fminf(passed, PAUSE_MOST_MS));
 	scene->camera = *camera;
 	scene->view = view;
 	scene->has_view = true;
@@ -372,7 +373,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	if (out->sliced) {
 		scene->frame_us = clock_now_us();
 	} else {
-		prepare(scene, moved, fminf(scene->still.passed_ms, PASSED_MOST_MS), out);
+		prepare(scene, moved, fminf(scene->still.passed_ms, FRAME_MOST_MS), out);
 		scene->still.passed_ms = 0;
 		if (scene_scenery(scene))
 			scene_update_around(scene, moved);
@@ -390,6 +391,7 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	/* Wanted objects may never arrive, so memory is freed without waiting for them. */
 	bool still = !moved && !changed && !scene_still_is_begun(scene) &&
 		     accumulation_is_done(&scene->accumulation);
+	scene->is_still = still;
 	out->settled = still && scene->want_count == 0;
 	out->moved = moved;
 	out->moving = !still || is_busy(scene);

@@ -229,6 +229,7 @@ struct scene {
 	struct camera camera;
 	struct view view;
 	bool has_view;
+	bool is_still; /* the last frame left nothing to draw */
 	int64_t frame_us;
 	/* owned; pieces of the cut, then of the patches it is replacing */
 	struct visible_piece *visible;

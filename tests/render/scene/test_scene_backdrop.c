@@ -106,6 +106,75 @@ static void it_goes_when_the_mesh_is_here(void **state)
 	strike_stage(&stage);
 }
 
+/* Where frames take long, a fade takes as long as elsewhere, not as many frames; but a pause in
+ * which nothing had to be drawn is no part of it. */
+static void it_fades_by_time_and_not_by_frames(void **state)
+{
+	static struct stage stage;
+	struct scene_tools tools = { 0 };
+
+	(void)state;
+	raise_stage(&stage, release, SCENE_LUMIGRAPH);
+	settle(&stage, false);
+	tools.rake.on = true;
+	scene_use(stage.scene, &tools);
+	usleep(500000);
+	draw_stage(&stage, &usual_camera);
+	CHECK(stage.scene->backdrop.share > 0.5f && stage.scene->backdrop.share < 1);
+	usleep(250000);
+	draw_stage(&stage, &usual_camera);
+	CHECK(stage.scene->backdrop.share <= 0);
+	strike_stage(&stage);
+}
+
+/* Gives what is wanted but for tiles and, if it is held back, the page of the last face. Returns
+ * the finest level of the tiles that are wanted, -1: none. */
+static int finest_wanted(struct stage *stage, bool held_back)
+{
+	struct message_want wants[64];
+	const size_t count = scene_wants(stage->scene, wants, 64);
+	int finest = -1;
+	bool held = !held_back;
+
+	for (size_t i = count; i-- > 0;) {
+		const struct object *object = scene_object(stage->scene, wants[i].hash);
+
+		if (!object || object->kind == OBJECT_GROUP)
+			continue;
+		if (object->kind == OBJECT_TILE) {
+			const int level = tile_name_unpack(object->id).level;
+
+			finest = level > finest ? level : finest;
+		} else if (object->kind == OBJECT_FACE && !held) {
+			held = true;
+		} else {
+			scene_give(stage->scene, wants[i].hash,
+				   little_object_bytes(release, wants[i].hash));
+		}
+	}
+	return finest;
+}
+
+/* Fine ones of a face that is known first would fill the line before what is missing everywhere. */
+static void coarse_images_of_all_faces_come_first(void **state)
+{
+	static struct stage stage;
+	int finest[2] = { -1, -1 };
+
+	(void)state;
+	raise_stage(&stage, release, SCENE_LUMIGRAPH);
+	for (int k = 0; k < 2; k++) {
+		for (int i = 0; i < 40; i++) {
+			draw_stage(&stage, &usual_camera);
+			finest[k] = finest_wanted(&stage, k == 0);
+			usleep(3000);
+		}
+	}
+	assert_int_equal(finest[0], 0);
+	CHECK(finest[1] > 0);
+	strike_stage(&stage);
+}
+
 /* A tool changes what is seen, which images cannot follow. */
 static void tools_need_the_mesh(void **state)
 {
@@ -144,6 +213,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(images_are_the_picture_before_any_patch),
 		cmocka_unit_test(it_goes_when_the_mesh_is_here),
+		cmocka_unit_test(it_fades_by_time_and_not_by_frames),
+		cmocka_unit_test(coarse_images_of_all_faces_come_first),
 		cmocka_unit_test(tools_need_the_mesh),
 	};
 
