@@ -80,8 +80,7 @@ void accumulation_add(struct accumulation *accumulation, const struct gl_place *
 	if (changed)
 		accumulation->same = 0;
 	if (!accumulation_is_done(accumulation)) {
-		uint32_t before =
-			changed ? ACCUMULATION_WINDOW : accumulation->same + ACCUMULATION_STALE;
+		uint32_t before = accumulation->same + ACCUMULATION_STALE;
 		before = accumulation->count < before ? accumulation->count : before;
 		accumulation->count++;
 		accumulation->same++;

@@ -6,9 +6,8 @@
 #include "render/display/gl.h"
 
 enum {
-	ACCUMULATION_WINDOW =
-		6, /* weight, in frames, of the previous picture while the scene changes */
-	ACCUMULATION_STALE = 3, /* and after the scene stopped changing */
+	/* weight, in frames, of the previous picture while the scene changes and after */
+	ACCUMULATION_STALE = 3,
 	/* frames without a change until it is done; the previous picture then keeps a twentieth */
 	ACCUMULATION_FRAMES = 12
 };
