@@ -5,9 +5,13 @@
 
 enum {
 	SAMPLE_MS = 250,
-	/* A shorter sample is used only if the line became idle after that much. */
-	SHORT_MS = 20,
-	SHORT_BYTES = 4096,
+	SHORT_MS = 20, /* a sample that the end of all requests cuts short has at least so much */
+	/* A sample has at least so much: of a small answer most is round trips. */
+	SAMPLE_BYTES = 4096,
+	/* A line is not silent for longer than it takes to carry some packets: what is longer are
+	 * round trips, in which nothing was on it. */
+	SILENCE_MS = 50,
+	SILENCE_BYTES = 4 * 1448,
 	PAST_MS = 3000, /* what came before weighs at most as much as so long a sample */
 	ODD_FACTOR = 3, /* so many times more or less is set aside */
 	ODD_MOST = 2,   /* so many in a row are no noise: the line has changed */
@@ -23,8 +27,6 @@ static void take_sample(struct line_rate *rate, uint64_t bytes, uint64_t ms)
 	const uint64_t now = bytes * 1000 / ms, was = rate->bytes_per_s;
 	const bool odd = now > ODD_FACTOR * was || now < was / ODD_FACTOR;
 
-	if (bytes == 0)
-		return; /* a line that carries nothing has no rate; the link notices it */
 	if (rate->is_measured && odd && ++rate->odd_count < ODD_MOST)
 		return;
 	if (!rate->is_measured || odd)
@@ -37,26 +39,44 @@ static void take_sample(struct line_rate *rate, uint64_t bytes, uint64_t ms)
 	rate->odd_count = 0;
 }
 
+/* Returns how much of the time between two arrivals was the line's. */
+static int64_t line_ms(const struct line_rate *rate, int64_t passed_ms)
+{
+	const int64_t packets_ms = (int64_t)(SILENCE_BYTES * 1000 / rate->bytes_per_s);
+	const int64_t most_ms = packets_ms > SILENCE_MS ? packets_ms : SILENCE_MS;
+
+	return rate->is_measured && passed_ms > most_ms ? most_ms : passed_ms;
+}
+
+static void begin_sample(struct line_rate *rate)
+{
+	rate->from_bytes = rate->received_bytes;
+	rate->sample_ms = 0;
+}
+
 void line_rate_note(struct line_rate *rate, uint64_t received_bytes, bool is_busy)
 {
-	const int64_t now_ms = clock_now_ms(), ms = now_ms - rate->from_ms;
-	const uint64_t bytes = received_bytes - rate->from_bytes;
+	const int64_t now_ms = clock_now_ms();
+	const bool came = received_bytes > rate->received_bytes;
 	const bool ends = rate->is_busy && !is_busy;
+	const uint64_t bytes = received_bytes - rate->from_bytes;
 
-	if (rate->is_receiving &&
-	    (ms >= SAMPLE_MS || (ends && ms >= SHORT_MS && bytes >= SHORT_BYTES))) {
-		take_sample(rate, bytes, (uint64_t)ms);
-		rate->from_bytes = received_bytes;
-		rate->from_ms = now_ms;
-	} else if (rate->is_busy && !rate->is_receiving && bytes > 0) {
+	rate->received_bytes = received_bytes;
+	if (rate->is_receiving && came)
+		rate->sample_ms += line_ms(rate, now_ms - rate->came_ms);
+	if (came)
+		rate->came_ms = now_ms;
+	if (rate->is_receiving && bytes >= SAMPLE_BYTES &&
+	    rate->sample_ms >= (ends ? SHORT_MS : SAMPLE_MS)) {
+		take_sample(rate, bytes, (uint64_t)rate->sample_ms);
+		begin_sample(rate);
+	} else if (rate->is_busy && !rate->is_receiving && came) {
 		rate->is_receiving = true;
-		rate->from_bytes = received_bytes;
-		rate->from_ms = now_ms;
+		begin_sample(rate);
 	}
 	if (is_busy != rate->is_busy) {
 		rate->is_busy = is_busy;
 		rate->is_receiving = false;
-		rate->from_bytes = received_bytes;
 	}
 }
 

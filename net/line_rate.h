@@ -9,20 +9,21 @@
 #include <stdint.h>
 
 struct line_rate {
-	uint64_t bytes_per_s; /* W; positive */
-	bool is_measured;     /* W is more than an assumption */
-	bool is_busy;         /* a request is in flight */
-	bool is_receiving;    /* its first bytes came: the sample runs */
-	uint32_t odd_count;   /* samples in a row that were set aside */
-	uint64_t from_bytes;  /* received when the sample began, or when the line became busy */
-	int64_t from_ms;      /* when it began */
+	uint64_t bytes_per_s;                /* W; positive */
+	bool is_measured;                    /* W is more than an assumption */
+	bool is_busy;                        /* a request is in flight */
+	bool is_receiving;                   /* its first bytes came: the sample runs */
+	uint32_t odd_count;                  /* samples in a row that were set aside */
+	uint64_t received_bytes, from_bytes; /* in all; of these when the sample began */
+	int64_t came_ms;                     /* when the last of them came */
+	int64_t sample_ms;                   /* of the line since the sample began */
 };
 
 /* Until there is a sample, bytes_per_s is assumed. */
 void line_rate_init(struct line_rate *rate, uint64_t bytes_per_s);
 /* Notes how much has been received in all so far, and whether anything is in flight. Call it
  * whenever something may have arrived. The time until the first byte after a pause is the server's,
- * and does not count. */
+ * and does not count; nor do round trips in between, in which the line was silent. */
 void line_rate_note(struct line_rate *rate, uint64_t received_bytes, bool is_busy);
 /* Returns how many bytes the line carries in that time. */
 uint64_t line_rate_carries(const struct line_rate *rate, uint32_t ms);

@@ -1,5 +1,7 @@
 #include "net/line_rate.h"
 
+#include <stdio.h>
+
 #include "base/clock.h"
 #include "tests/check.h"
 
@@ -92,6 +94,62 @@ static void pauses_do_not_count(void **state)
 	CHECK(is_about(&rate, 100000));
 }
 
+/* On a long line a turn comes in one piece, and then nothing until the next one was asked for. */
+static void round_trips_do_not_count(void **state)
+{
+	struct line_rate rate;
+
+	(void)state;
+	line_rate_init(&rate, 1 << 20);
+	line_rate_note(&rate, received, true);
+	carry(&rate, 40000, 600);
+	for (int turn = 0; turn < 60; turn++) {
+		const uint64_t bytes = line_rate_carries(&rate, 500);
+
+		now_ms += 300;
+		carry(&rate, 125000, (int)(bytes / 125));
+	}
+	printf("%llu bytes a second\n", (unsigned long long)rate.bytes_per_s);
+	CHECK(rate.bytes_per_s > 95000 && rate.bytes_per_s < 130000);
+}
+
+/* Each packet of such a line comes after a silence. */
+static void a_line_that_becomes_slow_is_noticed(void **state)
+{
+	struct line_rate rate;
+
+	(void)state;
+	line_rate_init(&rate, 1 << 20);
+	line_rate_note(&rate, received, true);
+	carry(&rate, 100000, 2000);
+	for (int packet = 0; packet < 40; packet++) {
+		now_ms += 362;
+		received += 1448;
+		line_rate_note(&rate, received, true);
+	}
+	printf("%llu bytes a second\n", (unsigned long long)rate.bytes_per_s);
+	CHECK(rate.bytes_per_s > 3600 && rate.bytes_per_s < 6000);
+}
+
+/* The answers of a start are smaller than a packet, a round trip each. */
+static void small_answers_tell_nothing(void **state)
+{
+	struct line_rate rate;
+
+	(void)state;
+	line_rate_init(&rate, 1 << 20);
+	for (int i = 0; i < 9; i++) {
+		line_rate_note(&rate, received, true);
+		now_ms += 300;
+		received += 400;
+		line_rate_note(&rate, received, true);
+		now_ms += 300;
+		received += 300;
+		line_rate_note(&rate, received, i % 2 == 0);
+	}
+	CHECK(!rate.is_measured && rate.bytes_per_s == 1 << 20);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -99,6 +157,9 @@ int main(void)
 		cmocka_unit_test(follows_a_line_that_changes),
 		cmocka_unit_test(sets_noise_aside),
 		cmocka_unit_test(pauses_do_not_count),
+		cmocka_unit_test(round_trips_do_not_count),
+		cmocka_unit_test(a_line_that_becomes_slow_is_noticed),
+		cmocka_unit_test(small_answers_tell_nothing),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
