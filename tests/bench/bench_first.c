@@ -24,7 +24,7 @@
 
 enum {
 	METADATA_BYTES = 5500, /* before the locator, as measured with the real programs */
-	METADATA_TRIPS = 9,    /* likewise */
+	METADATA_TRIPS = 5,    /* likewise */
 	LOOK_MS = 40,
 	TURN_BYTES_MIN = 6 << 10, /* as net/downloader.c */
 };
