@@ -106,9 +106,10 @@ static void it_goes_when_the_mesh_is_here(void **state)
 	strike_stage(&stage);
 }
 
-/* Where frames take long, a fade takes as long as elsewhere, not as many frames; but a pause in
- * which nothing had to be drawn is no part of it. */
-static void it_fades_by_time_and_not_by_frames(void **state)
+/* A tool changes what is seen, which images cannot follow. Where frames take long, they fade for as
+ * long as elsewhere, not for as many frames; but a pause in which nothing had to be drawn is no
+ * part of it. */
+static void for_a_tool_it_fades_by_time(void **state)
 {
 	static struct stage stage;
 	struct scene_tools tools = { 0 };
@@ -175,25 +176,6 @@ static void coarse_images_of_all_faces_come_first(void **state)
 	strike_stage(&stage);
 }
 
-/* A tool changes what is seen, which images cannot follow. */
-static void tools_need_the_mesh(void **state)
-{
-	static struct stage stage;
-	struct scene_tools tools = { 0 };
-
-	(void)state;
-	raise_stage(&stage, release, SCENE_LUMIGRAPH);
-	settle(&stage, false);
-	tools.rake.on = true;
-	scene_use(stage.scene, &tools);
-	for (int i = 0; i < 50; i++) {
-		draw_stage(&stage, &usual_camera);
-		usleep(10000);
-	}
-	CHECK(stage.scene->backdrop.share <= 0);
-	strike_stage(&stage);
-}
-
 static int make_release(void **state)
 {
 	(void)state;
@@ -213,9 +195,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(images_are_the_picture_before_any_patch),
 		cmocka_unit_test(it_goes_when_the_mesh_is_here),
-		cmocka_unit_test(it_fades_by_time_and_not_by_frames),
+		cmocka_unit_test(for_a_tool_it_fades_by_time),
 		cmocka_unit_test(coarse_images_of_all_faces_come_first),
-		cmocka_unit_test(tools_need_the_mesh),
 	};
 
 	return cmocka_run_group_tests(tests, make_release, free_release);
