@@ -25,7 +25,8 @@
 enum {
 	METADATA_BYTES = 5500, /* before the locator, as measured with the real programs */
 	METADATA_TRIPS = 5,    /* likewise */
-	LOOK_MS = 40,
+	LOOK_MS =
+		40, /* between looks at the picture, and a thirtieth of the time since the first */
 	TURN_BYTES_MIN = 6 << 10, /* as net/downloader.c */
 };
 

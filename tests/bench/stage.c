@@ -308,6 +308,15 @@ static bool send_over_line(struct stage *stage, const struct message_want *want,
 	return true;
 }
 
+/* Sends for an object from where it is. Returns false if more would have to wait. */
+static bool send_for_object(struct stage *stage, const struct message_want *want, uint64_t turn,
+			    int64_t now_us)
+{
+	if (was_had(stage, want->hash))
+		return send_to_cache(stage, want, now_us);
+	return send_over_line(stage, want, turn, now_us);
+}
+
 /* Sends for what is wanted most, as far as a turn goes. */
 static void send_for(struct stage *stage, int64_t now_us)
 {
@@ -316,9 +325,7 @@ static void send_for(struct stage *stage, int64_t now_us)
 	const uint64_t turn = turn_bytes(stage);
 
 	for (size_t i = 0; i < count; i++)
-		if (!(was_had(stage, wants[i].hash)
-			      ? send_to_cache(stage, &wants[i], now_us)
-			      : send_over_line(stage, &wants[i], turn, now_us)))
+		if (!send_for_object(stage, &wants[i], turn, now_us))
 			return;
 }
 
@@ -375,8 +382,8 @@ static void draw(struct stage *stage, const struct camera *camera, struct scene_
 		(int64_t)((float)(stage->work_us + beside_us / stage->cores) * stage->slowness);
 }
 
-/* Lets workers decode for so long. Returns how long they did. */
-static int64_t decode(struct stage *stage, int64_t most_us)
+/* Takes up to so much from the time that workers still need for decoding. Returns how much. */
+static int64_t work_off(struct stage *stage, int64_t most_us)
 {
 	const int64_t us = stage->decoding_us < most_us ? stage->decoding_us : most_us;
 
@@ -384,14 +391,15 @@ static int64_t decode(struct stage *stage, int64_t most_us)
 	return us;
 }
 
-/* They do it where cores are idle, beside the drawing thread while its driver does nothing and
- * until the next frame; before that half of the cores' time is theirs. */
+/* Workers decode beside the frame: first on the cores that are idle while the drawing thread works
+ * alone, then on half of all cores, which makes the frame longer, and at last in the time that is
+ * left until the next frame. */
 static void let_workers_decode(struct stage *stage)
 {
-	decode(stage, stage->work_us * (stage->cores - 1));
-	stage->spent_us += decode(stage, stage->spent_us * stage->cores) / stage->cores;
+	work_off(stage, stage->work_us * (stage->cores - 1));
+	stage->spent_us += work_off(stage, stage->spent_us * stage->cores) / stage->cores;
 	if (stage->options.frame_us > stage->spent_us)
-		decode(stage, (stage->options.frame_us - stage->spent_us) * stage->cores);
+		work_off(stage, (stage->options.frame_us - stage->spent_us) * stage->cores);
 }
 
 void stage_frame(struct stage *stage, const struct camera *camera, struct scene_frame *out)
