@@ -24,10 +24,10 @@ enum {
 	PLAN_BUDGET_US = 5000,
 	PLAN_BUDGET_REST_US = 50000, /* at rest nobody waits for the next frame */
 	UPLOAD_BUDGET_REST_US = 25000,
-	SEASON_US = 1000000,     /* longest season of the tiles while the eye moves */
-	FRAME_MOST_MS = 400,     /* fades are not slower where frames are */
-	PAUSE_MOST_MS = 100,     /* but a pause, in which nothing was drawn, makes nothing jump */
-	SHARE_PX_MAX = 320,      /* width of the picture from which image_share is counted */
+	SEASON_US = 1000000, /* longest season of the tiles while the eye moves */
+	FRAME_MOST_MS = 400, /* longest time of a frame that fades go on by */
+	PAUSE_MOST_MS = 100, /* the same after a pause in which nothing was drawn: or they jump */
+	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
 	DEPTH_TRIANGLES = 24000, /* of a face's depths in a frame, where frames take too long */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
 };

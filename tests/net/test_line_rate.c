@@ -1,7 +1,5 @@
 #include "net/line_rate.h"
 
-#include <stdio.h>
-
 #include "base/clock.h"
 #include "tests/check.h"
 
@@ -109,7 +107,6 @@ static void round_trips_do_not_count(void **state)
 		now_ms += 300;
 		carry(&rate, 125000, (int)(bytes / 125));
 	}
-	printf("%llu bytes a second\n", (unsigned long long)rate.bytes_per_s);
 	CHECK(rate.bytes_per_s > 95000 && rate.bytes_per_s < 130000);
 }
 
@@ -127,7 +124,6 @@ static void a_line_that_becomes_slow_is_noticed(void **state)
 		received += 1448;
 		line_rate_note(&rate, received, true);
 	}
-	printf("%llu bytes a second\n", (unsigned long long)rate.bytes_per_s);
 	CHECK(rate.bytes_per_s > 3600 && rate.bytes_per_s < 6000);
 }
 
