@@ -10,6 +10,7 @@ int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy)
 {
 	memset(geometry, 0, sizeof(*geometry));
 	geometry->hierarchy = hierarchy;
+	throttle_init(&geometry->throttle);
 	size_t groups = hierarchy->group_count + 1;
 	geometry->patches = calloc(hierarchy->patch_count + 1, sizeof(*geometry->patches));
 	geometry->loaded = calloc(groups, 1);
@@ -48,6 +49,7 @@ void geometry_finish(struct geometry *geometry)
 	free(geometry->loaded);
 	free(geometry->group_bytes);
 	free(geometry->group_stamp);
+	throttle_finish(&geometry->throttle);
 	memset(geometry, 0, sizeof(*geometry));
 }
 
@@ -251,10 +253,11 @@ void geometry_cull_none(void)
 	glDisable(GL_CULL_FACE);
 }
 
-void geometry_draw(uint32_t first_triangle, uint32_t triangle_count)
+void geometry_draw(struct geometry *geometry, uint32_t first_triangle, uint32_t triangle_count)
 {
 	glDrawElements(GL_TRIANGLES, (GLsizei)(3 * triangle_count), GL_UNSIGNED_SHORT,
 		       (void *)(uintptr_t)(3 * first_triangle * sizeof(uint16_t)));
+	throttle_count(&geometry->throttle, triangle_count);
 }
 
 bool geometry_ray(const struct geometry *geometry, const struct cut *cut, const float from_m[3],

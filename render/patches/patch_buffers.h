@@ -7,6 +7,7 @@
 
 #include "format/hierarchy.h"
 #include "render/display/gl.h"
+#include "render/display/throttle.h"
 #include "render/patches/cut.h"
 #include "render/patches/part_buffers.h"
 #include "render/patches/pool.h"
@@ -62,6 +63,7 @@ struct geometry {
 	uint64_t bytes;
 	uint64_t changes; /* counts loads and drops of groups */
 	uint32_t stamp;
+	struct throttle throttle;
 };
 
 /* Initialises it with nothing loaded. The hierarchy is borrowed and must outlive it. -ENOMEM. */
@@ -90,8 +92,8 @@ void geometry_bind(const struct geometry *geometry, uint32_t patch);
 void geometry_cull(const struct geometry *geometry, uint32_t patch);
 /* Ends culling, after the last patch was drawn. */
 void geometry_cull_none(void);
-/* Draws a range of triangles of the bound patch. */
-void geometry_draw(uint32_t first_triangle, uint32_t triangle_count);
+/* Draws a range of triangles of the bound patch; may wait for earlier ones (struct throttle). */
+void geometry_draw(struct geometry *geometry, uint32_t first_triangle, uint32_t triangle_count);
 
 struct geometry_hit {
 	uint32_t patch;

@@ -82,7 +82,8 @@ static void draw_face(struct scene *scene, int face, const float from_m[3])
 		if (!view_sees_sphere(&view, patch->centre_m, patch->radius_m))
 			continue;
 		geometry_bind(&scene->geometry, p);
-		geometry_draw(0, scene->geometry.patches[p].content.mesh.triangle_count);
+		geometry_draw(&scene->geometry, 0,
+			      scene->geometry.patches[p].content.mesh.triangle_count);
 	}
 	glCopyTexSubImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + (GLenum)face, 0, 0, 0, 0, 0,
 			    SCENE_AROUND_PX, SCENE_AROUND_PX);

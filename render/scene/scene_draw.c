@@ -67,7 +67,7 @@ static void draw_depth_patches(struct scene *scene, uint32_t triangles)
 			continue;
 		geometry_bind(&scene->geometry, p);
 		depth_patch(&scene->depth, patch->centre_m);
-		geometry_draw(0, count);
+		geometry_draw(&scene->geometry, 0, count);
 		drawn += count;
 	}
 	if (task->drawn == scene->around.patch_count) {

@@ -58,7 +58,7 @@ static void draw_region(struct scene *scene, const struct view *view, const stru
 	(void)view;
 	const struct piece *piece = &scene->geometry.patches[v->patch].content.bvh.pieces[v->piece];
 	geometry_bind(&scene->geometry, v->patch);
-	geometry_draw(piece->first_triangle, piece->triangle_count);
+	geometry_draw(&scene->geometry, piece->first_triangle, piece->triangle_count);
 }
 
 /* The area of a part is that of the whole patch, so the first of its pieces draws it. */

@@ -22,10 +22,10 @@ struct run {
 	uint32_t patch, first, count;
 };
 
-static void end_run(struct run *run)
+static void end_run(struct scene *scene, struct run *run)
 {
 	if (run->count > 0)
-		geometry_draw(run->first, run->count);
+		geometry_draw(&scene->geometry, run->first, run->count);
 	run->count = 0;
 }
 
@@ -37,7 +37,7 @@ static void draw_piece(struct scene *scene, const struct surface_frame *frame,
 	bool joins = surface_faces(v->program) == 0 && v->patch == run->patch &&
 		     piece->first_triangle == run->first + run->count;
 	if (!joins)
-		end_run(run);
+		end_run(scene, run);
 	if (v->patch != run->patch) {
 		geometry_bind(&scene->geometry, v->patch);
 		if (!view_is_cut(frame->view))
@@ -92,7 +92,7 @@ static float draw_with(struct scene *scene, const struct surface_frame *frame,
 		drawn += scene_piece_cost(scene, v, surface_faces(slice->program),
 					  frame->view->picture_px);
 	}
-	end_run(&run);
+	end_run(scene, &run);
 	return drawn;
 }
 

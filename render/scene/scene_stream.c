@@ -99,5 +99,5 @@ void scene_draw_stream(struct scene *scene, const struct surface_frame *frame)
 			      (void *)offsetof(struct stream_vertex, colour));
 	glVertexAttrib3f(3, 0, 0, 0);
 	surface_dissolve(&scene->surface, range);
-	geometry_draw(0, stream->growth.triangle_count);
+	geometry_draw(&scene->geometry, 0, stream->growth.triangle_count);
 }

@@ -56,7 +56,7 @@ void scene_draw_numbers(struct scene *scene, uint32_t from, uint32_t to)
 			geometry_bind(&scene->geometry, v->patch);
 		bound = v->patch;
 		visibility_number(&scene->visibility, i);
-		geometry_draw(piece->first_triangle, piece->triangle_count);
+		geometry_draw(&scene->geometry, piece->first_triangle, piece->triangle_count);
 	}
 }
 

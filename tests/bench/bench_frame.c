@@ -123,7 +123,7 @@ static void draw_enlarged(struct bench *bench)
 /* The pieces that the scene just drew, all of a patch at once. */
 static void draw_plain(struct bench *bench)
 {
-	const struct scene *scene = bench->stage.scene;
+	struct scene *scene = bench->stage.scene;
 	const struct lattice *lattice = &scene->root.lattice;
 	const float *eye = scene->view.eye_m;
 
@@ -150,7 +150,7 @@ static void draw_plain(struct bench *bench)
 			count += pieces[v[run].piece].triangle_count;
 		geometry_bind(&scene->geometry, v->patch);
 		geometry_cull(&scene->geometry, v->patch);
-		geometry_draw(pieces[v->piece].first_triangle, count);
+		geometry_draw(&scene->geometry, pieces[v->piece].first_triangle, count);
 	}
 	geometry_cull_none();
 }
