@@ -30,6 +30,7 @@ enum {
 	SHARE_PX_MAX = 320,  /* width of the picture from which image_share is counted */
 	DEPTH_TRIANGLES = 24000, /* of a face's depths in a frame, where frames take too long */
 	STILL_FRAMES = 1, /* drawn like those before, since a slow finger does not move in each */
+	SMALL_FRAMES = 4, /* at rest after them, where a picture at full size takes long */
 };
 
 /* ---- depth of faces */
@@ -211,6 +212,14 @@ static void keep_season(struct scene *scene, bool moved, int64_t now_us)
 	scene->season_us = now_us;
 }
 
+/* Returns whether the eye rests, but its picture is still enlarged from a small one: what loads,
+ * fades and sharpens then comes two to three times as often. */
+static bool rests_with_small(const struct scene *scene)
+{
+	return scene->effort.share < 1 && scene->still_frames > STILL_FRAMES &&
+	       scene->still_frames <= STILL_FRAMES + SMALL_FRAMES && !scene_still_is_begun(scene);
+}
+
 /* Returns the time since the last frame. */
 static float passed_ms(const struct scene *scene)
 {
@@ -235,9 +244,8 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	}
 	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
-	/* where a picture takes long, the first one at rest comes at once: what it lacks is in the
-	 * next one */
-	const bool at_once = scene->still_frames == STILL_FRAMES + 1 && scene->effort.share < 1;
+	/* the first of them comes at once: what it lacks is in the next one */
+	const bool at_once = rests_with_small(scene) && scene->still_frames == STILL_FRAMES + 1;
 	bool counted = false;
 	if (scene_uses_references(scene))
 		counted = scene_build_reference(scene);
@@ -250,8 +258,8 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 		return;
 	}
 	keep_season(scene, moved, now_us);
-	scene_plan_pieces(scene, moved || at_once ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
-						  : PLAN_BUDGET_REST_US);
+	scene_plan_pieces(scene, moved ? (int64_t)(PLAN_BUDGET_US * scene->used.budget)
+				       : PLAN_BUDGET_REST_US);
 	scene_fade_blends(scene, passed);
 	scene_step_backdrop(scene, passed);
 	if ((moved && counted) || at_once)
@@ -363,6 +371,8 @@ void scene_draw(struct scene *scene, const struct camera *camera, const struct s
 	scene->tools_moved = false;
 	scene->still_frames = moved ? 0 : scene->still_frames + 1;
 	scene->used = scene->still_frames <= STILL_FRAMES ? scene->effort : scene_effort_full;
+	if (rests_with_small(scene))
+		scene->used.scale = scene->effort.scale;
 	scene_note_motion(scene, &view, fminf(passed, PAUSE_MOST_MS));
 	scene->camera = *camera;
 	scene->view = view;

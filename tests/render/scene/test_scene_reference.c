@@ -329,7 +329,7 @@ static void a_picture_at_rest_is_left_for_a_touch(void **state)
 	CHECK(difference(whole, stage.seen) < 1);
 	/* what is seen stays, until an eye that moves sees it at once */
 	camera.eye_m[0] += 0.05f;
-	for (int i = 0; i < 8; i++) {
+	for (int i = 0; i < 12; i++) {
 		draw_stage(&stage, &camera);
 		begun += stage.scene->still.is_begun;
 		CHECK(!stage.scene->still.is_begun || i < 3 ||
@@ -344,7 +344,8 @@ static void a_picture_at_rest_is_left_for_a_touch(void **state)
 	CHECK(difference(stage.before, stage.seen) > 0);
 }
 
-/* The first picture at full size waits neither for a visibility pass nor for depths. */
+/* The first picture after a stop waits neither for a visibility pass nor for depths. It and three
+ * more are small where a picture at full size takes long. */
 static void a_stop_shows_a_whole_picture_at_once(void **state)
 {
 	const struct scene *scene = stage.scene;
@@ -355,13 +356,31 @@ static void a_stop_shows_a_whole_picture_at_once(void **state)
 	settle();
 	aside_m = reach_first();
 	draw_aside(aside_m, slices, NULL); /* as those before: a slow finger */
-	CHECK(!scene->still.sum_is_seen);
+	CHECK(scene->used.share < 1);
 	counted_us = scene->visibility_us;
 	draw_aside(aside_m, slices, NULL);
-	CHECK(scene->still.sum_is_seen);
+	CHECK(scene->used.share == 1 && scene->used.scale == 0.5f);
 	CHECK(scene->visibility_us == counted_us && stage.frame.depth_faces_drawn == 0);
+	for (int i = 0; i < 3; i++) {
+		draw_aside(aside_m, slices, NULL);
+		CHECK(scene->visibility_us != counted_us && scene->used.scale == 0.5f);
+		CHECK(!scene->still.sum_is_seen);
+	}
 	draw_aside(aside_m, slices, NULL);
-	CHECK(scene->visibility_us != counted_us);
+	CHECK(scene->used.scale == 1 && scene->still.sum_is_seen);
+}
+
+static void a_board_with_time_is_sharp_at_once(void **state)
+{
+	const struct scene *scene = stage.scene;
+
+	(void)state;
+	settle();
+	draw_aside(0.1f, 1, NULL);
+	draw_aside(0.1f, 1, NULL);
+	CHECK(scene->used.scale == 0.5f && !scene->still.sum_is_seen);
+	draw_aside(0.1f, 1, NULL);
+	CHECK(scene->used.scale == 1 && scene->still.sum_is_seen);
 }
 
 static void a_warped_picture_has_the_mark(void **state)
@@ -402,6 +421,7 @@ int main(void)
 						strike),
 		cmocka_unit_test_setup_teardown(a_stop_shows_a_whole_picture_at_once, raise,
 						strike),
+		cmocka_unit_test_setup_teardown(a_board_with_time_is_sharp_at_once, raise, strike),
 		cmocka_unit_test_setup_teardown(a_warped_picture_has_the_mark, raise, strike),
 	};
 	int failed;
