@@ -1,13 +1,27 @@
 #!/bin/bash
 # loader.sh [all]: tests in QEMU what the firmware and the loader start, with Secure Boot on and off: a loader that the firmware's key
 # signed, and one that another key signed; a kernel and an initramfs as they were signed, and with one changed byte. The
-# firmware has the key that Debian's ovmf brings for tests. Without "all" only the changed initramfs.
+# firmware has the key that Debian's firmware brings for tests. Without "all" only the changed initramfs. With ARCH=arm64 the
+# image and the firmware of that architecture.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }
-./deps.sh image/tools.txt || skip "what makes an image cannot be installed here"
+. image/arch.sh
+for list in image/tools.txt "${tools[@]}"; do
+	./deps.sh "$list" || skip "what makes an image cannot be installed here"
+done
 export PATH=$PATH:/usr/sbin:/sbin
-image=build/qemu-image/image work=build/qemu-loader firmware=/usr/share/OVMF snakeoil=/usr/share/ovmf/PkKek-1-snakeoil
+case $ARCH in
+amd64)
+	machine=(qemu-system-x86_64 -machine q35,smm=on -global driver=cfi.pflash01,property=secure,value=on -cpu Nehalem -vga none)
+	code=/usr/share/OVMF/OVMF_CODE_4M.secboot.fd variables=/usr/share/OVMF/OVMF_VARS_4M snakeoil=/usr/share/ovmf/PkKek-1-snakeoil
+	;;
+arm64)
+	machine=(qemu-system-aarch64 -machine virt -cpu cortex-a72)
+	code=/usr/share/AAVMF/AAVMF_CODE.fd variables=/usr/share/AAVMF/AAVMF_VARS snakeoil=/usr/share/qemu-efi-aarch64/PkKek-1-snakeoil
+	;;
+esac
+image=build/qemu-$(basename "$image_folder")/image work=build/qemu-loader-$ARCH
 tests/qemu/lib-image.sh "$image"
 rm -rf "$work"
 mkdir -p "$work"
@@ -15,14 +29,14 @@ trap 'rm -f "$work"/*.img' EXIT
 
 # place NAME: where on the disk the partition begins, in bytes
 place() { sfdisk --json "$image/gopura.img" | jq ".partitiontable.partitions[] | select(.name == \"$1\").start * 512"; }
-# starts CASE VARIABLES EXPECTED UNEXPECTED: boots the disk CASE until the serial line says what is expected
+# starts CASE KEYS EXPECTED UNEXPECTED: boots the disk CASE until the serial line says what is expected. KEYS: those in the
+# firmware, none or snakeoil
 starts() {
 	local log=$work/$1.log qemu until=$((SECONDS + 300)) began=$SECONDS
-	cp "$firmware/$2" "$work/variables.img"
+	cp "$variables${2:+.$2}.fd" "$work/variables.img"
 	: >"$log"
-	qemu-system-x86_64 -machine q35,smm=on -global driver=cfi.pflash01,property=secure,value=on -accel tcg,thread=multi \
-		-cpu Nehalem -m 1024 -display none -nodefaults -vga none -no-reboot -serial "file:$log" \
-		-drive "if=pflash,format=raw,readonly=on,file=$firmware/OVMF_CODE_4M.secboot.fd" \
+	"${machine[@]}" -accel tcg,thread=multi -m 1024 -display none -nodefaults -no-reboot -serial "file:$log" \
+		-drive "if=pflash,format=raw,readonly=on,file=$code" \
 		-drive "if=pflash,format=raw,file=$work/variables.img" \
 		-drive "file=$work/$1.img,if=none,id=disk,format=raw" -device virtio-blk-pci,drive=disk,bootindex=0 &
 	qemu=$!
@@ -49,16 +63,16 @@ change() {
 refused() {
 	disk "$1"
 	change "$1"
-	starts "$1" OVMF_VARS_4M.fd 'bad signature' 'gopura: starting slot'
+	starts "$1" "" 'bad signature' 'gopura: starting slot'
 }
 refused initrd
 [ "${1:-}" = all ] || exit 0
 refused vmlinuz
 disk others
-starts others OVMF_VARS_4M.snakeoil.fd 'Access Denied' 'GRUB'
+starts others snakeoil 'Access Denied' 'GRUB'
 
 disk trusted
 openssl rsa -in $snakeoil.key -passin pass:snakeoil -out "$work/key.pem" 2>/dev/null
-sbsign --key "$work/key.pem" --cert $snakeoil.pem --output "$work/BOOTX64.EFI" "$image/BOOTX64.EFI" 2>/dev/null
-mcopy -o -i "$work/trusted.img@@$(place gopura-esp)" "$work/BOOTX64.EFI" ::/EFI/BOOT/BOOTX64.EFI
-starts trusted OVMF_VARS_4M.snakeoil.fd 'gopura: starting slot a' 'bad signature'
+sbsign --key "$work/key.pem" --cert $snakeoil.pem --output "$work/$loader" "$image/$loader" 2>/dev/null
+mcopy -o -i "$work/trusted.img@@$(place gopura-esp)" "$work/$loader" "::/EFI/BOOT/$loader"
+starts trusted snakeoil 'gopura: starting slot a' 'bad signature'
