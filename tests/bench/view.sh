@@ -3,10 +3,11 @@
 # close-ups, none on a sampling point, 1280 x 720, from an empty cache, in the three modes, fetched from
 # the museum server: bytes are all that its connections brought.
 #
-#   ROWS="demo venus-70"  these rows alone          VIEWS=N  of each row, spread over its path
+#   ROWS="demo venus-70"  these rows alone
+#   VIEWS=N            of each row, spread over its path (default 6: all rows in half an hour once they are built)
 #   SUPERSAMPLE=N      of the truth (default 4: 16 samples a pixel)
 #
-# Rows, of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
+# Rows, with VIEWS=60 of 60 views each: temple-300 and temple-100 (5 M triangles, colours of vertices, a tenth of it
 # published; so many KB a view by the price of a kilobyte), temple-open-300 (all of it published), fine-250 (colours
 # finer than vertices), venus-70 and zeus-70 (real scans, textured); demo (2 M triangles, colours finer
 # than vertices) has the 40 farther apart of tests/e2e/pictures.sh.
@@ -23,7 +24,7 @@ make --no-print-directory benches tests >/dev/null
 
 # spread: of the views that come in, VIEWS
 spread() {
-	awk -v n="${VIEWS:-1000}" '!/^#/ { line[++count] = $0 }
+	awk -v n="${VIEWS:-6}" '!/^#/ { line[++count] = $0 }
 		END { for (i = 1; i <= count; i++)
 			if (n >= count || int(i * n / count) > int((i - 1) * n / count)) print line[i] }'
 }
@@ -48,7 +49,8 @@ draw() {
 	mkdir -p "$out"
 	spread >"$out/views.txt"
 	echo "$5" >"$out/classes"
-	printf '[render]\nprice_px_per_kb = %s\n' "$4" >"$out/board.ini"
+	# Nobody waits for a frame, only until it is settled.
+	printf '[render]\nprice_px_per_kb = %s\nupload_us = 100000\n' "$4" >"$out/board.ini"
 	build/gopura-content render "$2" --views "$out/views.txt" --size 1280x720 \
 		--supersample "${SUPERSAMPLE:-4}" --out "$truth" >&2
 	# Those of a longer path before are of no use, and would be missed below.

@@ -28,7 +28,7 @@ def plot(name, title):
         top = y(min(f["spent_ms"] / MOST_MS, 1))
         out.append(f'<rect x="{x(f["at_ms"]):.1f}" y="{top:.1f}" width="{width:.1f}" '
                    f'height="{y(0) - top:.1f}" fill="{"#ccc" if f["rests"] else "#468"}"/>')
-    points = " ".join(f'{x(f["at_ms"]):.1f},{y((f["level"] + 0.4) / 1.4):.1f}' for f in frames)
+    points = " ".join(f'{x(f["at_ms"]):.1f},{y((f["level"] + 0.7) / 1.7):.1f}' for f in frames)
     out.append(f'<polyline points="{points}" fill="none" stroke="#e80" stroke-width="2"/></svg>')
     open(f"{work}/{name.replace('/', '-')}.svg", "w").write("\n".join(out) + "\n")
 
@@ -36,7 +36,7 @@ def plot(name, title):
 def row(size, load):
     found = json.load(open(f"{work}/{size}/{load}/visit.json"))
     plot(f"{size}/{load}", f"{size} million triangles, load: {load}. Bars: time of each frame (grey: at rest). "
-         "Line: level, -0.4 to 1. Red: 30 frames a second")
+         "Line: level, -0.7 to 1. Red: 30 frames a second")
     legs = {leg["leg"]: leg["median_ms"] for leg in found["legs"]}
     return {"million": int(size), "load": load, "orbit_ms": legs[ORBIT], "walk_ms": legs[WALK]} | found
 
