@@ -73,7 +73,7 @@ TESTS    := $(TEST_SOURCES:%.c=$(BUILD)/%)
 TEST_OBJECTS := $(patsubst %.c,$(BUILD)/obj/%.o,$(shell find tests -name '*.c'))
 FUZZ     := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/fuzz/fuzz_*.c))
 SHIMS    := tests/tools/weak_gl tests/tools/lost_gl tests/tools/sick tests/tools/failing_calls tests/tools/set_clock \
-            tests/tools/virtual_clock
+            tests/tools/virtual_clock tests/tools/count_instructions
 TOOLS    := $(patsubst %.c,$(BUILD)/%,$(filter-out $(SHIMS:%=%.c),$(wildcard tests/tools/*.c)))
 CATALOGUES := $(patsubst ui/po/%.po,$(BUILD)/locale/%/LC_MESSAGES/gopura.mo,$(wildcard ui/po/*.po))
 BENCH_PARTS := $(patsubst %,$(BUILD)/obj/tests/bench/%.o,stage visit hand shown)
@@ -283,7 +283,7 @@ $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE) | $(CATALOGUES)
 	@mkdir -p $(@D)
 	$(LINK) -lcmocka
 
-# Libraries that tests of weak and failing boards preload; part of no program.
+# Libraries that tests preload, or that QEMU loads; part of no program.
 $(SHIMS:%=$(BUILD)/%.so): $(BUILD)/%.so: %.c | $(BUILD)/.deps
 	@mkdir -p $(@D)
 	@echo '  link  $@'

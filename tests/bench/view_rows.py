@@ -1,7 +1,6 @@
 """view_rows.py WORK ROW...: what view.sh drew, as JSON. See docs/figures.md."""
 import json
 import os
-import re
 import sys
 
 work, names = sys.argv[1], sys.argv[2:]
@@ -52,12 +51,12 @@ def row(name):
 
 
 def first_picture():
-    """Of the 5 M temple: KB of objects after which the first view has 30 dB; None where it was not drawn."""
+    """Of the 5 M temple: bytes after which the first view has 30 dB; None where it was not drawn, or never had them."""
     try:
-        found = re.search(r"30\.0 dB after (\d+) KB", open(f"{work}/first-30db").read())
+        found = json.load(open(f"{work}/first-30db"))["bytes_db30"]
     except FileNotFoundError:
         return None
-    return int(found[1]) * 1000 if found and int(found[1]) else None
+    return found if found > 0 else None
 
 
 def other(bench, *keys):
