@@ -162,7 +162,8 @@ static bool any_hit(const float place[3], int face, float low_u, float low_v, fl
 
 static void knows_what_each_face_covers(void **state)
 {
-	bool seen[6 * 6 * 4][CUBE_FACES] = { { false } };
+	/* by place in the grid; the last is the vantage point's, which lies behind all others */
+	bool seen[6 * 6 * 4 + 1][CUBE_FACES] = { { false } };
 	const struct sample_grid *grid;
 	struct samples_store *store;
 	struct sample_face face;
