@@ -23,10 +23,9 @@
 #include "tests/bench/stage.h"
 
 enum {
-	METADATA_BYTES = 5500, /* before the locator, as measured with the real programs */
-	METADATA_TRIPS = 5,    /* likewise */
-	LOOK_MS =
-		40, /* between looks at the picture, and a thirtieth of the time since the first */
+	METADATA_BYTES = 5500,    /* before the locator, as measured with the real programs */
+	METADATA_TRIPS = 5,       /* likewise */
+	LOOK_MS = 40,             /* between looks at first; later a thirtieth of the time */
 	TURN_BYTES_MIN = 6 << 10, /* as net/downloader.c */
 };
 

@@ -1,5 +1,5 @@
 /* What frames cost in instructions, on any architecture that QEMU emulates
- * (tests/tools/count_instructions.c). Here is what is counted; the plugin counts.
+ * (tests/tools/count_instructions.c, a plugin that counts what this program does between marks).
  *
  *   bench_instructions RELEASE VIEWS
  *
@@ -20,8 +20,8 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 20, SETTLE_MS = 60000 };
 static void mark(void)
 {
 	/* to no file: the plugin sees the call */
-	if (write(-1, "", 1) == 0)
-		stage_die("a write to nowhere", 0);
+	const ssize_t none = write(-1, "", 1);
+	(void)none;
 }
 
 static void move(struct stage *stage, struct camera *camera, struct governor *governor, float level)

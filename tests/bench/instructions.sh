@@ -1,8 +1,7 @@
 #!/bin/bash
 # By make bench-full: what the first view and frames of a moving eye cost in instructions, which unlike
 # time can be counted for an architecture that is not at hand: x86-64 and arm64 in QEMU's user emulation,
-# a temple of 60 000 triangles at 640 x 360, on one thread. build/bench/instructions.json. A quarter of
-# an hour.
+# a temple of 60 000 triangles at 640 x 360, on one thread. build/bench/instructions.json. Ten minutes.
 set -eu
 cd "$(dirname "$0")/../.."
 for tool in aarch64-linux-gnu-gcc qemu-aarch64 qemu-x86_64; do
