@@ -92,7 +92,8 @@ void geometry_bind(const struct geometry *geometry, uint32_t patch);
 void geometry_cull(const struct geometry *geometry, uint32_t patch);
 /* Ends culling, after the last patch was drawn. */
 void geometry_cull_none(void);
-/* Draws a range of triangles of the bound patch; may wait for earlier ones (struct throttle). */
+/* Draws a range of triangles of the bound patch, or of other buffers that are bound, for which the
+ * geometry may be zeroed; may wait for earlier triangles (struct throttle). */
 void geometry_draw(struct geometry *geometry, uint32_t first_triangle, uint32_t triangle_count);
 
 struct geometry_hit {

@@ -23,12 +23,11 @@ struct governor {
 	/* 1: everything at full effort, 0: the least with which each frame is drawn whole; below 0
 	 * frames show the last picture while the next one is drawn */
 	float level;
-	uint32_t divisor; /* refreshes of the panel for each frame */
-	uint32_t whole;   /* triangles of the last frame in which they were not limited */
-	float over;       /* load of the last frame, if it was too much; else 0 */
-	int64_t quiet_us; /* of frames in time, since the level changed or two loads were too high
-			   */
-	float most[2];    /* the two largest loads since then, of late frames too */
+	uint32_t divisor;    /* refreshes of the panel for each frame */
+	uint32_t whole;      /* triangles of the last frame in which they were not limited */
+	float over;          /* load of the last frame, if it was too much; else 0 */
+	int64_t quiet_us;    /* of frames in time, since the level changed or two loads were high */
+	float most[2];       /* the two largest loads since then, of late frames too */
 	int64_t patience_us; /* how long it must be quiet before the level rises */
 	int64_t risen_us;    /* time of moving frames since the level last rose */
 	int64_t held_us;     /* since it last fell */

@@ -244,7 +244,7 @@ static void prepare(struct scene *scene, bool moved, float passed, struct scene_
 	}
 	scene_update_cut(scene, passed);
 	scene_list_pieces(scene);
-	/* the first of them comes at once: what it lacks is in the next one */
+	/* the first small picture after a stop comes at once: what it lacks is in the next one */
 	const bool at_once = rests_with_small(scene) && scene->still_frames == STILL_FRAMES + 1;
 	bool counted = false;
 	if (scene_uses_references(scene))

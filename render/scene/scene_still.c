@@ -33,7 +33,7 @@ void scene_still_renew(struct scene *scene)
 	accumulation_break(&scene->accumulation);
 }
 
-/* The small picture of the last motion lacks the line around a marked part. */
+/* The last small picture, of a motion or after a stop, lacks the line around a marked part. */
 static bool can_show_last(const struct scene *scene)
 {
 	return scene->still.sum_is_seen ||
