@@ -15,7 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STATIONS_MAX = 1 << 17, ROWS_KEPT = 3 };
+enum { STATIONS_MAX = 1 << 17, ROWS_KEPT = 3, VERTEX_BYTES = 16, QUAD_BYTES = 2 * 13 };
+enum { OUT_BYTES = STATIONS_MAX * QUAD_BYTES };
 
 struct row {
 	float (*positions)[3];
@@ -31,6 +32,8 @@ struct writer {
 	uint64_t vertices, triangles; /* of the whole temple */
 	struct station *across, *up;  /* STATIONS_MAX each */
 	struct row rows[ROWS_KEPT];
+	uint8_t *out; /* OUT_BYTES for what is to be written, the longest row at least */
+	size_t out_bytes;
 };
 
 /* Equal sheets would all gain a row at the same density, and the sum would jump; so each sheet has
@@ -132,6 +135,24 @@ static void colour_vertex(const struct writer *w, const float position[3], const
 	out[3] = (uint8_t)(fminf(1, fmaxf(0.02f, open)) * 255 + 0.5f);
 }
 
+static int write_out(struct writer *w)
+{
+	size_t bytes = w->out_bytes;
+
+	w->out_bytes = 0;
+	return fwrite(w->out, 1, bytes, w->file) == bytes ? 0 : -EIO;
+}
+
+/* Where the next bytes of the file, at most OUT_BYTES, are to be put; NULL if those before could
+ * not be written. */
+static uint8_t *next_out(struct writer *w, size_t bytes)
+{
+	if (w->out_bytes + bytes > OUT_BYTES && write_out(w) < 0)
+		return NULL;
+	w->out_bytes += bytes;
+	return w->out + w->out_bytes - bytes;
+}
+
 static int write_row(struct writer *w, const struct sheet *sheet, uint32_t columns, uint32_t rows,
 		     uint32_t row)
 {
@@ -139,19 +160,19 @@ static int write_row(struct writer *w, const struct sheet *sheet, uint32_t colum
 	const struct row *below = row ? &w->rows[(row - 1) % ROWS_KEPT] : here;
 	const struct row *above = row + 1 < rows ? &w->rows[(row + 1) % ROWS_KEPT] : here;
 	bool wraps = sheet_wraps(sheet);
+	uint8_t *out = next_out(w, (size_t)columns * VERTEX_BYTES);
 
-	for (uint32_t i = 0; i < columns; i++) {
+	if (!out)
+		return -EIO;
+	for (uint32_t i = 0; i < columns; i++, out += VERTEX_BYTES) {
 		uint32_t left = i ? i - 1 : wraps ? columns - 1 : 0;
 		uint32_t right = i + 1 < columns ? i + 1 : wraps ? 0 : i;
 		float normal[3], spacing_m;
-		uint8_t out[16];
 		normal_at(here->positions[left], here->positions[right], below->positions[i],
 			  above->positions[i], normal, &spacing_m);
 		for (int k = 0; k < 3; k++)
 			put_f32(out + 4 * k, here->positions[i][k]);
 		colour_vertex(w, here->positions[i], normal, spacing_m, here->hollow[i], out + 12);
-		if (fwrite(out, sizeof(out), 1, w->file) != 1)
-			return -EIO;
 	}
 	return 0;
 }
@@ -179,10 +200,13 @@ static int write_triangles(struct writer *w, const struct sheet *sheet, uint32_t
 	uint32_t quads = sheet_wraps(sheet) ? columns : columns ? columns - 1 : 0;
 
 	for (uint32_t row = 0; row + 1 < rows; row++) {
-		for (uint32_t i = 0; i < quads; i++) {
+		uint8_t *out = next_out(w, (size_t)quads * QUAD_BYTES);
+		if (!out)
+			return -EIO;
+		for (uint32_t i = 0; i < quads; i++, out += QUAD_BYTES) {
 			uint32_t a = (uint32_t)first + row * columns + i;
 			uint32_t b = (uint32_t)first + row * columns + (i + 1) % columns;
-			uint8_t out[26] = { 3 };
+			out[0] = 3;
 			put_u32(out + 1, a);
 			put_u32(out + 5, b);
 			put_u32(out + 9, b + columns);
@@ -190,8 +214,6 @@ static int write_triangles(struct writer *w, const struct sheet *sheet, uint32_t
 			put_u32(out + 14, a);
 			put_u32(out + 18, b + columns);
 			put_u32(out + 22, a + columns);
-			if (fwrite(out, sizeof(out), 1, w->file) != 1)
-				return -EIO;
 		}
 	}
 	progress_add(w->options->progress, sheet_triangles(sheet, columns, rows));
@@ -226,6 +248,8 @@ static int write_all(struct writer *w)
 		rc = write_triangles(w, sheet, columns, rows, first);
 		first += sheet_vertices(sheet, columns, rows);
 	}
+	if (rc == 0)
+		rc = write_out(w);
 	if (rc == 0 && (fflush(w->file) != 0 || ferror(w->file)))
 		rc = -EIO;
 	return rc;
@@ -258,7 +282,8 @@ static int list_bodies(const struct writer *w, struct temple_bodies *out)
 
 static int writer_rooms(struct writer *w)
 {
-	bool whole = true;
+	w->out = malloc(OUT_BYTES);
+	bool whole = w->out;
 
 	w->across = calloc(STATIONS_MAX, sizeof(*w->across));
 	w->up = calloc(STATIONS_MAX, sizeof(*w->up));
@@ -278,6 +303,7 @@ static void writer_finish(struct writer *w)
 	}
 	free(w->across);
 	free(w->up);
+	free(w->out);
 	sky_destroy(w->sky);
 	plan_destroy(&w->plan);
 }
