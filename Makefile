@@ -80,7 +80,7 @@ BENCH_PARTS := $(patsubst %,$(BUILD)/obj/tests/bench/%.o,stage visit hand shown)
 BENCHES  := $(patsubst %.c,$(BUILD)/%,$(wildcard tests/bench/bench_*.c))
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps demo curator test check soak soak-year torture badinput pictures golden fuzz fuzz-coverage powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
+.PHONY: all help deps demo curator test check soak soak-year soak-night torture badinput pictures golden fuzz fuzz-coverage powercut interrupted image image-check qemu-test qemu arm64 unit unit-san check-style po format bench bench-full clean
 .SECONDARY:
 
 all: deps $(PROGRAMS) $(CATALOGUES) ## build the programs into build/
@@ -117,6 +117,9 @@ soak: all $(BUILD)/.test-deps ## random touches on the whole kiosk under sanitiz
 
 soak-year: all $(BUILD)/.test-deps ## a year of a terminal's days on a clock that is set forward (docs/life.md), DAYS=366 VISITS=1 (half an hour)
 	@DAYS=$(or $(DAYS),366) START=2027-11-15 VISITS=$(or $(VISITS),1) WORK=build/year bash tests/e2e/year.sh
+
+soak-night: all $(BUILD)/.test-deps ## the same programs for HOURS=8 of real time, with visitors and releases (docs/life.md)
+	@HOURS=$(or $(HOURS),8) WORK=build/night bash tests/e2e/year.sh
 
 torture: all $(BUILD)/.test-deps ## every allocation and every call on a file fails once, in each use of the programs (hours); USES="keys build" SAMPLES=N
 	@SAMPLES=$(or $(SAMPLES),0) USES="$(USES)" bash tests/e2e/torture.sh

@@ -1,5 +1,5 @@
-"""tpm.py IMAGE WORK: boots the image of an encrypting terminal (DATA=tpm) with swtpm as its TPM; WORK has two other loaders, which tpm.sh makes. The
-power is cut at the end of each start: neither disk nor TPM is told. One disk goes through all CASES, in their order."""
+"""tpm.py IMAGE WORK: boots the image of an encrypting terminal (DATA=tpm) with swtpm as its TPM; WORK has two other loaders and another kernel, which
+tpm.sh makes. The power is cut at the end of each start: neither disk nor TPM is told. One disk goes through all CASES, in their order."""
 import hashlib
 import mmap
 import os
@@ -108,6 +108,19 @@ def loader(work, file):
     subprocess.run(["mcopy", "-o", "-i", f"{work}/disk.img@@{first}", file, "::/EFI/BOOT/BOOTX64.EFI"], check=True)
 
 
+def update(work, image):
+    """What an update does: the other slot gets a system, of another kernel and initramfs, and the loader is told to start it."""
+    parts = {part["name"]: part["start"] * 512 for part in table(f"{work}/disk.img")}
+    for file, slot in ((f"{work}/boot.img", "gopura-boot-b"), (f"{os.path.dirname(image)}/root.squashfs", "gopura-root-b")):
+        with open(file, "rb") as new, open(f"{work}/disk.img", "r+b") as disk:
+            disk.seek(parts[slot])
+            shutil.copyfileobj(new, disk, 1 << 20)
+    environment, loader = f"{work}/grubenv", f"{work}/disk.img@@{parts['gopura-esp']}"
+    subprocess.run(["mcopy", "-n", "-i", loader, "::/gopura/grubenv", environment], check=True)
+    subprocess.run(["grub-editenv", environment, "set", "ORDER=B A", "B_OK=1", "B_TRY=0"], check=True)
+    subprocess.run(["mcopy", "-o", "-i", loader, environment, "::/gopura/grubenv"], check=True)
+
+
 def no_cipher(work):
     """Names another cipher in both copies of the LUKS2 header, one that leaves everything readable; their checksums need no key."""
     with open(f"{work}/disk.img", "r+b") as disk:
@@ -158,6 +171,8 @@ def main():
 
     one = first(work)
     same("the second start", one, start(work, "second", "tpm", [UNLOCKED], [ANEW, NO_TPM]), True)
+    update(work, image)
+    same("an update to another kernel", one, start(work, "another kernel", "tpm", ["gopura: starting slot b", UNLOCKED], [ANEW, NO_TPM]), True)
     no_cipher(work)
     changed = start(work, "without a cipher", "tpm", [ANEW, UNLOCKED], [NO_TPM])
     same("without a cipher", one, changed, False)

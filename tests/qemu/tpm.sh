@@ -21,4 +21,12 @@ sed 's/This program cannot be run in DOS mode/This program cannot be run in dos 
 openssl rsa -in $snakeoil.key -passin pass:snakeoil -out "$work/snakeoil.pem" 2>/dev/null
 sbsign --key "$work/snakeoil.pem" --cert $snakeoil.pem --output "$work/trusted.efi" "$image/BOOTX64.EFI" 2>/dev/null
 trap 'rm -f "$work"/*.img' EXIT
+
+# What an update puts into the other slot: a kernel and an initramfs with more bytes at their end, where neither minds.
+cp "$image/boot.img" "$work/boot.img"
+cp "$image/boot"/{vmlinuz,initrd} "$work/"
+truncate -s +4096 "$work/vmlinuz" "$work/initrd"
+KEYS=${KEYS:-build/image-keys} SOURCE_DATE_EPOCH=$(date +%s) image/loader-keys.sh sign "$work"/{vmlinuz,initrd} 2>"$work/sign.log"
+for file in {vmlinuz,initrd}{,.sig}; do printf 'rm /%s\nwrite %s /%s\n' "$file" "$work/$file" "$file"; done |
+	debugfs -w -f - "$work/boot.img" >"$work/debugfs.log" 2>&1
 python3 tests/qemu/tpm.py "$image/gopura.img" "$work" "$@"

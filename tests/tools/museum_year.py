@@ -3,6 +3,7 @@
 forward whenever nothing happens (tests/tools/virtual_clock.c), with nginx, visitors, nights, new releases and faults.
 
     museum_year.py WORK --days N [--start YYYY-MM-DD] [--visits N]     lives through it: WORK/year.csv
+    museum_year.py WORK --hours N                                     hours of real time, without that clock: WORK/hours.csv
     museum_year.py check FILE.csv                                     what must stay flat stays flat
     museum_year.py plot FILE.csv FILE.svg
 
@@ -15,6 +16,7 @@ import urllib.request
 PROGRAMS = ("kiosk", "fetch", "health")
 SECOND, HOUR, DAY = 10**9, 3600, 86400
 OPENS, CLOSES = 9, 17
+MINUTES, POLL_MINUTES = 5, 10  # of real hours: of a row, and between looks for new releases
 SHARED_BYTES = 8 * (4 + 3 * 4)
 
 # ---- what is to stay flat, and how it is judged
@@ -57,9 +59,11 @@ def check(path):
         judge(f"{program}: starts", max(series(rows, f"{program}_starts")), 1, "")
     judge("cache.db", max(series(rows, "cache_bytes")) / 1e6, max(series(rows, "cache_budget_bytes")) / 1e6, "MB")
     judge("other files of the state", max(series(rows, "state_bytes")) / 1e6, MOST_STATE / 1e6, "MB")
-    written = series(warm, "written_bytes")
+    is_year = "day" in rows[0]
+    written = [bytes * (1 if is_year else 24 * 60 / MINUTES) for bytes in series(warm, "written_bytes")]
     judge("written in a day, mean", statistics.fmean(written) / 1e6, MOST_WRITTEN / 1e6, "MB")
-    judge("written in a day, most", max(written) / 1e6, MOST_WRITTEN / 1e6, "MB")
+    if is_year:
+        judge("written in a day, most", max(written) / 1e6, MOST_WRITTEN / 1e6, "MB")
     last = rows[-1]
     # one that was published on the last day may be on its way
     judge("releases not followed", float(rows[-2]["published"]) - float(last["shown"]), 0, "")
@@ -76,7 +80,7 @@ PANELS = (
     ("open files", [(f"{p}_fds", p, 1) for p in PROGRAMS]),
     ("threads", [(f"{p}_threads", p, 1) for p in PROGRAMS]),
     ("cache.db and state, MB", [("cache_bytes", "cache.db", 1e-6), ("state_bytes", "state", 1e-6)]),
-    ("written in a day, MB", [("written_bytes", "", 1e-6)]),
+    ("written since the last, MB", [("written_bytes", "", 1e-6)]),
 )
 COLOURS, WIDTH, HIGH, LEFT = ("#246", "#c60", "#3a3"), 960, 130, 60
 
@@ -92,8 +96,10 @@ def plot(path, to):
             out.append(f'<line x1="{x(day):.1f}" x2="{x(day):.1f}" y1="60" y2="{total - 20}" stroke="#ddd"/>'
                        f'<text x="{x(day):.1f}" y="58" transform="rotate(-25 {x(day):.1f} 58)" fill="#777">'
                        f'{row["event"].split(";")[0]}</text>')
-        if row["date"].endswith("-01") or n < 40:
-            out.append(f'<text x="{x(day):.1f}" y="{total - 6}" text-anchor="middle">{row["date"][2:7 if n >= 40 else 10]}</text>')
+        date = row["date"]
+        if date.endswith(("-01", ":00")) or n < 40 and "day" in row:
+            shown = date if "minute" in row else date[2 : 7 if n >= 40 else 10]
+            out.append(f'<text x="{x(day):.1f}" y="{total - 6}" text-anchor="middle">{shown}</text>')
     for i, (title, lines) in enumerate(PANELS):
         top, bottom = 70 + i * HIGH + 18, 70 + (i + 1) * HIGH - 8
         most = max(max(series(rows, name)) * scale for name, _, scale in lines) or 1
@@ -151,21 +157,47 @@ class Clock:
         self.put()
         time.sleep(0.1)
 
-    def written(self):
+    def written(self, _):
         """Bytes, bytes of whole pages of 4 KiB, syncs: of all programs of the terminal."""
         numbers = struct.unpack("<16Q", self.map[:])[4:13]
-        return sum(numbers[0::3]), 4096 * sum(numbers[1::3]), sum(numbers[2::3])
+        return {"told_bytes": sum(numbers[0::3]), "written_bytes": 4096 * sum(numbers[1::3]), "syncs": sum(numbers[2::3])}
+
+
+class RealClock:
+    """The same for hours of real time, without moves; what the programs write, the kernel counts."""
+
+    def __init__(self):
+        self.began_s = time.monotonic()
+
+    def now_s(self):
+        return time.monotonic() - self.began_s
+
+    def go_to(self, at_s, *_):
+        time.sleep(max(0, at_s - self.now_s()))
+
+    def trim(self):
+        pass
+
+    def written(self, pids):
+        counts = [dict(line.split(": ") for line in pathlib.Path(f"/proc/{pid}/io").read_text().splitlines()) for pid in pids]
+        return {"written_bytes": sum(int(count["write_bytes"]) for count in counts)}
 
 
 # ---- the museum
 
 class Museum:
+    name, hours, poll_s = "year.csv", f"Mo-Su {OPENS:02}:00-{CLOSES:02}:00", HOUR
+
     def __init__(self, work, start, days, visits):
         self.work, self.begins, self.days, self.visits = work, start, days, visits
+        self.disk, self.children, self.server, self.published, self.row = work / "disk", {}, None, 0, {}
+        self.set_clock()
+
+    def set_clock(self):
+        start, work = self.begins, self.work
         self.clock = Clock(work / "clock", datetime.datetime.combine(start, datetime.time(), datetime.timezone.utc).timestamp())
         here = pathlib.Path("build/tests/tools/virtual_clock.so").resolve()
         self.env = dict(os.environ, LD_PRELOAD=str(here), GOPURA_CLOCK=str((work / "clock").resolve()), TZ="UTC")
-        self.disk, self.children, self.server, self.published, self.row = work / "disk", {}, None, 0, {}
 
     def virtual(self, *command, **more):
         """Runs a command on the virtual clock to its end."""
@@ -233,10 +265,10 @@ class Museum:
         (self.work / "visits.touch").write_text(self.touches())
         self.start("fetch", "--release", f"https://127.0.0.1:{self.port()}/", "--ca", str(self.work / "server/ca.pem"), "--cache",
                    str(self.disk / "cache.db"), "--socket", str(self.work / "socket"), "--metrics", str(self.work / "fetch"),
-                   "--poll-s", "3600")
+                   "--poll-s", str(self.poll_s))
         self.start("kiosk", "--display", "headless", "--size", "480x320", "--socket", str(self.work / "socket"), "--trust",
                    str(self.work / "release/tuf/1.root.json"), "--state", str(self.disk), "--metrics", str(self.work / "kiosk"),
-                   "--touch-replay", str(self.work / "visits.touch"), "--hours", f"Mo-Su {OPENS:02}:00-{CLOSES:02}:00",
+                   "--touch-replay", str(self.work / "visits.touch"), "--hours", self.hours,
                    "--visits", str(self.work / "visits.csv"))
         with socket.socket() as s:
             s.bind(("127.0.0.1", 0))
@@ -269,10 +301,10 @@ class Museum:
 
     # -- a day
 
-    def sample(self, day, event, before):
+    def sample(self, label, event):
         self.clock.trim()
         metrics = self.metrics()
-        row = {"day": day, "date": (self.begins + datetime.timedelta(day)).isoformat(), "event": event, "published": self.published}
+        row = label | {"event": event, "published": self.published}
         for program, child in self.children.items():
             if child.poll() is not None:
                 sys.exit(f"FAILED: gopura-{program} ended on {row['date']}:\n"
@@ -286,14 +318,21 @@ class Museum:
                     f"{program}_starts": self.starts[program]}
         files = {file.name: file.stat().st_size for file in self.disk.iterdir()}
         cache = sum(size for name, size in files.items() if name.startswith("cache.db"))
-        now = self.clock.written()
-        row |= {"cache_bytes": cache, "state_bytes": sum(files.values()) - cache - files.get("filler", 0),
-                "told_bytes": now[0] - before[0], "written_bytes": now[1] - before[1], "syncs": now[2] - before[2]}
+        before, self.before = self.before, self.written()
+        row |= {"cache_bytes": cache, "state_bytes": sum(files.values()) - cache - files.get("filler", 0)}
+        row |= {name: now - before[name] for name, now in self.before.items()}
         for name, metric in (("shown", "kiosk_release_sequence"), ("online", "fetch_online"), ("refusals", "kiosk_refusals_total"),
                              ("frames", "kiosk_frames_total"), ("cache_budget_bytes", "fetch_cache_budget_bytes")):
             row[name] = metrics.get(f"gopura_{metric}", self.row.get(name, 0))
         self.row = row
-        return row
+        if not self.table:
+            self.table = csv.DictWriter(self.file, row.keys())
+            self.table.writeheader()
+        self.table.writerow(row)
+        self.file.flush()
+
+    def written(self):
+        return self.clock.written([child.pid for child in self.children.values()])
 
     @staticmethod
     def heap_kb(proc):
@@ -365,32 +404,30 @@ class Museum:
             self.clock.go_to(self.clock.now_s() + 30, 10, 0.2)
 
     def live(self):
+        self.begin(self.days * 3 // 12 if self.days >= 60 else 3000)
+        events = self.events()
+        for day in range(self.days):
+            names = []
+            for name, act in events.get(day, []):
+                act()
+                names.append(name)
+            if day % 7 == 3 and not self.publisher_is_away(day):
+                self.publish(f"What is new on day {day}")
+            self.live_day(day)
+            if day == self.days - 1:
+                self.wait_until_followed()
+            date = (self.begins + datetime.timedelta(day)).isoformat()
+            self.sample({"day": day, "date": date}, ";".join(name for name in names if name))
+
+    def begin(self, certified_days):
+        """The first release, its server, the terminal, two minutes, and the table."""
         self.disk.mkdir(exist_ok=True)
         self.publish("The first release")
         self.start_server()
-        self.certify(self.days * 3 // 12 if self.days >= 60 else 3000)
+        self.certify(certified_days)
         self.start_terminal()
         self.clock.go_to(120, 2, 0.1)
-        events, before = self.events(), self.clock.written()
-        with open(self.work / "year.csv", "w", newline="") as file:
-            writer = None
-            for day in range(self.days):
-                names = []
-                for name, act in events.get(day, []):
-                    act()
-                    names.append(name)
-                if day % 7 == 3 and not self.publisher_is_away(day):
-                    self.publish(f"What is new on day {day}")
-                self.live_day(day)
-                if day == self.days - 1:
-                    self.wait_until_followed()
-                row = self.sample(day, ";".join(name for name in names if name), before)
-                before = self.clock.written()
-                writer = writer or csv.DictWriter(file, row.keys())
-                if file.tell() == 0:
-                    writer.writeheader()
-                writer.writerow(row)
-                file.flush()
+        self.file, self.table, self.before = open(self.work / self.name, "w", newline=""), None, self.written()
 
     def end(self):
         for child in reversed(self.children.values()):
@@ -402,6 +439,34 @@ class Museum:
         return bad
 
 
+class Hours(Museum):
+    """Hours of real time with the programs as they are on a terminal: open all the time, a visitor in every second row, and a
+    release in every twelfth."""
+
+    name, hours, poll_s = "hours.csv", "00:00-24:00", POLL_MINUTES * 60
+
+    def __init__(self, work, hours):
+        self.rows = hours * 60 // MINUTES
+        super().__init__(work, None, 1, 0)
+
+    def set_clock(self):
+        self.clock, self.env = RealClock(), dict(os.environ, TZ="UTC")
+
+    def visit_times(self, _):
+        return [row * MINUTES * 60 for row in range(1, self.rows, 2)]
+
+    def live(self):
+        self.begin(3000)
+        began_s = self.clock.now_s()
+        for row in range(self.rows):
+            names = []
+            if row % 12 == 5:
+                names = [f"release {self.published + 1}"]
+                self.publish(f"What is new in row {row}")
+            self.clock.go_to(began_s + (row + 1) * MINUTES * 60)
+            self.sample({"minute": (row + 1) * MINUTES, "date": f"{row * MINUTES // 60}:{row * MINUTES % 60:02}"}, ";".join(names))
+
+
 def main():
     if sys.argv[1] == "check":
         bad = check(sys.argv[2])
@@ -411,11 +476,13 @@ def main():
     options = argparse.ArgumentParser()
     options.add_argument("work", type=pathlib.Path)
     options.add_argument("--days", type=int, default=366)
+    options.add_argument("--hours", type=int)
     options.add_argument("--start", type=datetime.date.fromisoformat, default=datetime.date(2027, 11, 15))
     options.add_argument("--visits", type=int, default=2)
     given = options.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit("FAILED: told to end"))  # and ends what it has started
-    museum = Museum(given.work.resolve(), given.start, given.days, given.visits)
+    work = given.work.resolve()
+    museum = Hours(work, given.hours) if given.hours else Museum(work, given.start, given.days, given.visits)
     try:
         museum.live()
     finally:
