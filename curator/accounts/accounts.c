@@ -176,10 +176,10 @@ int accounts_make_folder(const char *folder, struct diagnostics *diagnostics)
 	if (stat(path, &is) < 0 || (chmod(path, (is.st_mode & 07777) | 0711) < 0 && errno != EPERM))
 		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));
 	rc = path_of(path, folder, ".curator/.gitignore", diagnostics);
-	if (rc == 0 && access(path, F_OK) < 0)
-		rc = bytes_write_file((struct bytes){ (const uint8_t *)ignored, strlen(ignored) },
-				      path);
-	return rc;
+	if (rc < 0 || access(path, F_OK) == 0)
+		return rc;
+	rc = bytes_write_file((struct bytes){ (const uint8_t *)ignored, strlen(ignored) }, path);
+	return rc < 0 ? diagnostics_add(diagnostics, rc, path, 0, "%s", strerror(-rc)) : 0;
 }
 
 /* As bytes_write_file, which would let everybody read it. */

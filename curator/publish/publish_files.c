@@ -244,10 +244,11 @@ int publish_files_make(const char *folder, struct diagnostics *diagnostics)
 	char path[PATH_MAX];
 	int rc = accounts_make_folder(folder, diagnostics);
 
-	if (rc == 0)
-		rc = publish_file_path(path, folder, "");
 	if (rc < 0)
 		return rc;
+	rc = publish_file_path(path, folder, "");
+	if (rc < 0)
+		return diagnostics_add(diagnostics, rc, folder, 0, "%s", strerror(-rc));
 	/* The publisher may be another user of the folder's group, which the umask must allow. */
 	if (mkdir(path, 0770) < 0 && errno != EEXIST)
 		return diagnostics_add(diagnostics, -errno, path, 0, "%s", strerror(errno));

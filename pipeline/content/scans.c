@@ -401,17 +401,17 @@ const struct scans_shape *scans_known_shape(struct scans *scans)
 	return scans->has_shape ? &scans->shape : NULL;
 }
 
-/* Returns whether a scan had pictures, by what the import reported. */
-static bool reports_have_pictures(struct scans *scans)
+/* Sets *found to whether a scan had pictures, by what the import reported. */
+static int find_pictures(struct scans *scans, bool *found)
 {
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
 	const int count = reports ? scans_get_reports(scans, reports) : -ENOMEM;
-	bool found = false;
 
+	*found = false;
 	for (int i = 0; i < count; i++)
-		found |= reports[i].textures > 0;
+		*found |= reports[i].textures > 0;
 	free(reports);
-	return found;
+	return count < 0 && count != -ENOENT ? count : 0;
 }
 
 /* Takes the shape of the mesh in memory and saves it. */
@@ -424,7 +424,9 @@ static int take_shape(struct scans *scans, struct diagnostics *diagnostics)
 
 	*shape = (struct scans_shape){ .has_textures = scans->mesh.textures != NULL,
 				       .scan_count = scans->mesh.scan_count };
-	shape->had_pictures = shape->has_textures || reports_have_pictures(scans);
+	shape->had_pictures = shape->has_textures;
+	if (rc == 0 && !shape->has_textures)
+		rc = find_pictures(scans, &shape->had_pictures);
 	mesh_box(&scans->mesh, shape->low_m, shape->high_m);
 	for (uint32_t i = 0; i < shape->scan_count; i++)
 		shape->face_counts[i] = scans->mesh.scans[i].face_count;

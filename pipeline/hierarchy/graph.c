@@ -288,12 +288,15 @@ static void divide_in_runs(uint32_t *labels, const struct graph *graph, uint32_t
 		labels[i] = (uint32_t)((uint64_t)i * part_count / graph->node_count);
 }
 
-static bool all_parts_used(const idx_t *parts, uint32_t node_count, uint32_t part_count)
+/* Returns 1 if no part is empty, 0 if one is, or -ENOMEM. */
+static int all_parts_used(const idx_t *parts, uint32_t node_count, uint32_t part_count)
 {
 	uint32_t used = 0;
 	bool *seen = calloc(part_count, sizeof(*seen));
 
-	for (uint32_t i = 0; seen && i < node_count; i++) {
+	if (!seen)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < node_count; i++) {
 		used += !seen[parts[i]];
 		seen[parts[i]] = true;
 	}
@@ -312,14 +315,16 @@ static int divide_at_once(uint32_t *labels, const struct graph *graph, uint32_t 
 		rc = -ENOMEM;
 	if (rc == 0)
 		rc = run_metis(parts, &rows, graph, part_count, shares);
-	if (rc == 0 && all_parts_used(parts, graph->node_count, part_count))
+	if (rc == 0)
+		rc = all_parts_used(parts, graph->node_count, part_count);
+	if (rc > 0)
 		for (uint32_t i = 0; i < graph->node_count; i++)
 			labels[i] = (uint32_t)parts[i];
 	else if (rc == 0)
 		divide_in_runs(labels, graph, part_count);
 	rows_finish(&rows);
 	free(parts);
-	return rc;
+	return rc < 0 ? rc : 0;
 }
 
 /* Makes a graph of the nodes with one of two labels. names[node] is set to a node's index in it. */

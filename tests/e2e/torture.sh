@@ -24,6 +24,7 @@ shim=$PWD/build/tests/tools/failing_calls.so content=build/gopura-content
 tiny_content "$work/content" 10000 5000
 "$content" build "$work/content" --out "$work/release" --keys "$work/keys" --jobs 1 >"$work/log" 2>&1 || { cat "$work/log"; fail build; }
 cp -a "$work/release" "$work/reference"
+ln -s reference "$work/reference-build"
 cp -a "$work/keys" "$work/both_forms"
 "$content" keys --keys "$work/both_forms" --tuf >"$work/log" 2>&1 || { cat "$work/log"; fail keys; }
 "$content" annotations export "$work/content" --out "$work/parts.jsonld" >"$work/log" 2>&1 || { cat "$work/log"; fail annotations; }
@@ -31,6 +32,9 @@ printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/te
 cp "$work/keys/root/1.json" "$work/"
 mkdir "$work/pillar"
 python3 tests/tools/leaning_pillar.py "$work/pillar" 0
+printf '[model]\nname = pillar\nscans = pillar.obj\n[grid]\npoints = 4\nface_px = 128\n[hierarchy]\nsurface = octree\ncell_mm = 100\n' >"$work/surface.ini"
+cp "$work/surface.ini" "$work/pillar/temple.ini"
+"$content" build "$work/pillar" --out "$work/reference-surface" --keys "$work/keys" --jobs 1 >"$work/log" 2>&1 || { cat "$work/log"; fail surface; }
 printf '[model]\nscans = pillar.obj\n' >"$work/pillar/temple.ini"
 printf '{"steps": [{"lattice": [1, 1, 1], "box": {"low": [-2, -2, 0], "high": [2, 2, 4]}, "moves": [{"points": [0, "all", "all"], "by": [-0.2, 0, 0]}]}]}\n' >"$work/bend.json"
 python3 tests/tools/points_of_a_ball.py "$work/ball.ply"
@@ -71,7 +75,7 @@ use() {
 	both) command=("$content" publish "$work/content" --out "$work/new" --keys "$work/both_forms" --comment "$RANDOM") ;;
 	user) command=(build/gopura-curator user add "$work/new" eva) ;;
 	publisher) command=(build/gopura-curator publisher "$work/new" --out "$work/release" --keys "$work/keys" --jobs 1 --once) ;;
-	build) command=("$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1) ;;
+	build | surface) command=("$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1) ;;
 	setup) command=(build/gopura-setup --check "$work/gopura.conf") ;;
 	esac
 	timeout -k 5 120 env FAIL_PROGRAM="${command[0]##*/}" "$@" LD_PRELOAD="$shim" "${command[@]}" >"$work/said" 2>&1 <<<'password of eva'
@@ -98,10 +102,16 @@ prepare() {
 		cp -a "$work/content" "$work/new"
 		mkdir -p "$work/new/.curator/publish"
 		ask 1 ;;
-	build)
-		cp -a "$work/content" "$work/fresh"
-		rm -rf "$work/fresh/.work" ;;
+	build) fresh "$work/content" ;;
+	surface)
+		fresh "$work/pillar"
+		cp "$work/surface.ini" "$work/fresh/temple.ini" ;;
 	esac
+}
+# fresh FOLDER: its content as it was before any build
+fresh() {
+	cp -a "$1" "$work/fresh"
+	rm -rf "$work/fresh/.work"
 }
 # ask N: the page's N-th request for a release
 ask() {
@@ -150,9 +160,9 @@ strain() {
 	publisher)
 		use publisher && [[ $(step_of_publisher) =~ done|failed ]] && ask 2 && use publisher && [ "$(step_of_publisher)" = done ] &&
 			"$content" verify "$work/release" >"$work/said" 2>&1 || fault "publisher: $2 call $4: the next request is not carried out" ;;
-	build)
+	build | surface)
 		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
-			diff -rq "$work/reference/packs" "$work/made/packs" >>"$work/said" || fault "build: $2 call $4: the next one makes another release" ;;
+			diff -rq "$work/reference-$1/packs" "$work/made/packs" >>"$work/said" || fault "$1: $2 call $4: the next one makes another release" ;;
 	esac
 }
 
@@ -190,7 +200,7 @@ all() {
 
 is_asked() { [ -z "${KINDS:-}" ] || [[ " $KINDS " = *" $1 "* ]]; }
 RANDOM=${SEED:-1}
-for name in ${USES:-keys rekeys team exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build setup terminal user publisher fetch folder stick again health curator kiosk morning follow touch}; do
+for name in ${USES:-keys rekeys team exchange inspect verify import export temple deform reconstruct render annotations iiif annotated publish both build surface setup terminal user publisher fetch folder stick again health curator kiosk morning follow touch}; do
 	! is_asked memory || all "$name" memory 12
 	io=(5 28 4) database=(5 28) # EIO, ENOSPC, EINTR
 	[ "$samples" = 0 ] || io=("${io[RANDOM % 3]}") database=("${database[RANDOM % 2]}")
