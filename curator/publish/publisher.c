@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "base/log.h"
 #include "base/service.h"
+#include "base/transient.h"
 #include "curator/publish/content_run.h"
 #include "curator/publish/publish_files.h"
 #include "pipeline/content/content.h"
@@ -36,13 +37,14 @@ struct publisher {
 
 /* ---- the releases that there are */
 
-/* -ENODATA: temple.ini has faults, and had them before. */
+/* -ENODATA: temple.ini has faults, and had them before. Transient errors. */
 static int find_place(struct publisher *publisher, struct release_place *out)
 {
 	struct diagnostics found = { 0 };
 	struct content content;
+	int rc = content_read(&content, publisher->options->folder, &found);
 
-	if (content_read(&content, publisher->options->folder, &found) == 0) {
+	if (rc == 0) {
 		memcpy(publisher->target, content.tuf_target, sizeof(publisher->target));
 		memcpy(publisher->role, content.tuf_role, sizeof(publisher->role));
 		publisher->knows_place = true;
@@ -52,7 +54,7 @@ static int find_place(struct publisher *publisher, struct release_place *out)
 	*out = (struct release_place){ .folder = publisher->options->release,
 				       .target = publisher->target,
 				       .role = publisher->role };
-	return publisher->knows_place ? 0 : -ENODATA;
+	return publisher->knows_place ? 0 : is_transient(rc) ? rc : -ENODATA;
 }
 
 /* Who made it and when is not in a release: it is in the list as it was. */
@@ -93,6 +95,8 @@ static int collect(struct publish_releases *out, const struct publish_releases *
 		struct publish_release *one = &out->list[out->count];
 
 		rc = release_look_at(&release, place, &trust, sequence);
+		if (is_transient(rc))
+			return rc;
 		if (rc == -EKEYREJECTED)
 			break; /* nobody can go back to what keys of earlier days signed */
 		if (rc < 0)
@@ -114,17 +118,22 @@ static int write_releases(struct publisher *publisher, const struct publish_stat
 	struct publish_releases before = { 0 }, now = { 0 };
 	const struct publisher_options *options = publisher->options;
 	struct release_place place;
-	int rc;
+	int rc = find_place(publisher, &place);
 
-	if (find_place(publisher, &place) < 0) {
+	if (rc == -ENODATA) {
 		log_warn("curator",
 			 "temple.ini has faults, so the list of releases stays as it is");
 		return 0;
 	}
-	if (publish_releases_read(&before, options->folder) < 0)
+	if (rc == 0)
+		rc = publish_releases_read(&before, options->folder);
+	if (rc < 0 && !is_transient(rc)) {
 		log_warn("curator",
 			 "releases.json is damaged: who published is not known any more");
-	rc = collect(&now, &before, &place, state);
+		rc = 0;
+	}
+	if (rc == 0)
+		rc = collect(&now, &before, &place, state);
 	if (rc == 0)
 		rc = publish_releases_write(&now, options->folder);
 	publish_releases_finish(&before);
@@ -134,17 +143,23 @@ static int write_releases(struct publisher *publisher, const struct publish_stat
 	return rc;
 }
 
-/* 0: nothing was published yet. */
-static uint64_t current_sequence(struct publisher *publisher)
+/* Gets 0 if nothing was published yet, or what was cannot be used. Returns transient errors. */
+static int current_sequence(struct publisher *publisher, uint64_t *out)
 {
 	struct release_place place;
 	struct trust_root trust;
-	struct release release;
+	struct release release = { 0 };
+	int rc = find_place(publisher, &place);
 
-	if (find_place(publisher, &place) < 0 || release_look_trust(&trust, place.folder) < 0 ||
-	    release_look_at(&release, &place, &trust, 0) < 0)
+	if (rc == 0)
+		rc = release_look_trust(&trust, place.folder);
+	if (rc == 0)
+		rc = release_look_at(&release, &place, &trust, 0);
+	*out = rc == 0 ? release.sequence : 0;
+	if (!is_transient(rc))
 		return 0;
-	return release.sequence;
+	log_error("curator", "%s: %s", place.folder, strerror(-rc));
+	return rc;
 }
 
 /* ---- one request */
@@ -165,14 +180,15 @@ static int run_content(struct publisher *publisher, const struct publish_request
 	return content_run(&run, message);
 }
 
-/* Returns -ECANCELED if the program is to end. */
-static int carry_out(struct publisher *publisher, struct publish_state *state, bool was_killed)
+/* current: the release before this try. Returns -ECANCELED if the program is to end. */
+static int carry_out(struct publisher *publisher, struct publish_state *state, bool was_killed,
+		     uint64_t current)
 {
 	const struct publish_request *request = &state->request;
 	int tries = was_killed ? TRIES_AFTER_KILL : 1;
 	int rc = 0;
 
-	if (was_killed && request->sequence > 0 && current_sequence(publisher) > state->before)
+	if (was_killed && request->sequence > 0 && current > state->before)
 		return 0; /* it was done before we were killed */
 	for (; tries > 0; tries--) {
 		struct pollfd stop = { .fd = publisher->stop_fd, .events = POLLIN };
@@ -187,7 +203,7 @@ static int carry_out(struct publisher *publisher, struct publish_state *state, b
 }
 
 static int begin(struct publisher *publisher, struct publish_state *state,
-		 const struct publish_request *request)
+		 const struct publish_request *request, uint64_t current)
 {
 	const bool was_killed =
 		state->step == PUBLISH_RUNNING && state->request.number == request->number;
@@ -198,7 +214,7 @@ static int begin(struct publisher *publisher, struct publish_state *state,
 			.request = *request,
 			.step = PUBLISH_RUNNING,
 			.begun_s = clock_wall_s(),
-			.before = current_sequence(publisher),
+			.before = current,
 		};
 	rc = publish_state_write(state, publisher->options->folder);
 	if (rc < 0)
@@ -214,25 +230,29 @@ static int work(struct publisher *publisher, struct publish_state *state,
 {
 	const bool was_killed =
 		state->step == PUBLISH_RUNNING && state->request.number == request->number;
-	int done, rc = begin(publisher, state, request);
+	uint64_t current;
+	int done, rc = current_sequence(publisher, &current);
 
+	if (rc == 0)
+		rc = begin(publisher, state, request, current);
 	if (rc < 0)
 		return rc;
-	done = carry_out(publisher, state, was_killed);
+	done = carry_out(publisher, state, was_killed, current);
 	if (done == -ECANCELED) {
 		publisher->stopped = true; /* the next start goes on */
 		return 0;
 	}
 	state->step = done == 0 ? PUBLISH_DONE : PUBLISH_FAILED;
 	state->ended_s = clock_wall_s();
-	state->after = current_sequence(publisher);
-	rc = write_releases(publisher, state);
+	rc = current_sequence(publisher, &state->after);
+	if (rc == 0)
+		rc = write_releases(publisher, state);
 	if (rc == 0)
 		rc = publish_state_write(state, publisher->options->folder);
 	if (done < 0)
 		log_error("curator", "request %" PRIu64 " failed: %s", request->number,
 			  state->message);
-	else
+	else if (rc == 0)
 		log_info("curator", "release %" PRIu64 " is the current one", state->after);
 	return rc < 0 ? rc : done;
 }
@@ -245,12 +265,16 @@ static int step(struct publisher *publisher)
 	struct publish_state state;
 	int rc = publish_state_read(&state, folder);
 
+	if (is_transient(rc)) {
+		log_error("curator", "state.json: %s", strerror(-rc));
+		return rc;
+	}
 	if (rc < 0)
 		log_warn("curator", "state.json is damaged: what was asked for last is not known");
 	rc = publish_request_read(&request, folder);
 	if (rc < 0) {
 		log_error("curator", "request.json: %s", strerror(-rc));
-		return 0;
+		return is_transient(rc) ? rc : 0;
 	}
 	if (!publish_is_pending(&request, &state))
 		return 0;

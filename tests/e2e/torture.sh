@@ -74,7 +74,7 @@ use() {
 	publish) command=("$content" publish "$work/content" --out "$work/release" --keys "$work/keys" --comment "$RANDOM") ;;
 	both) command=("$content" publish "$work/content" --out "$work/new" --keys "$work/both_forms" --comment "$RANDOM") ;;
 	user) command=(build/gopura-curator user add "$work/new" eva) ;;
-	publisher) command=(build/gopura-curator publisher "$work/new" --out "$work/release" --keys "$work/keys" --jobs 1 --once) ;;
+	publisher) command=(build/gopura-curator publisher "$work/new" --out "$work/made" --keys "$work/keys" --jobs 1 --once) ;;
 	build | surface) command=("$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1) ;;
 	setup) command=(build/gopura-setup --check "$work/gopura.conf") ;;
 	esac
@@ -100,6 +100,7 @@ prepare() {
 		build/gopura-curator user add "$work/new" ana >"$work/said" 2>&1 <<<'password of ana' ;;
 	publisher)
 		cp -a "$work/content" "$work/new"
+		cp -a "$work/reference" "$work/made"
 		mkdir -p "$work/new/.curator/publish"
 		ask 1 ;;
 	build) fresh "$work/content" ;;
@@ -118,6 +119,8 @@ ask() {
 	printf '{"number": %d, "sequence": 0, "at": 1795000000, "by": "ana", "comment": "%d"}\n' "$1" "$RANDOM" >"$work/new/.curator/publish/request.json"
 }
 says_tuf() { python3 -c 'import base64, json, sys; sys.exit("tuf_root" not in json.loads(base64.b64decode(json.load(open(sys.argv[1]))["payload"])))' "$1/release.json"; }
+# All releases are ana's in the list but the first, which was made on the command line.
+are_by_ana() { python3 -c 'import json, sys; sys.exit(any((one["by"] == "ana") != (one["sequence"] > 1) for one in json.load(open(sys.argv[1]))["releases"]))' "$work/new/.curator/publish/releases.json"; }
 step_of_publisher() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["step"])' "$work/new/.curator/publish/state.json"; }
 
 runs=0 survived=0 faults=0
@@ -159,7 +162,8 @@ strain() {
 			build/gopura-curator user list "$work/new" >"$work/said" && grep -q ana "$work/said" && grep -q eva "$work/said" || fault "user: $2 call $4: an account is lost, or none can be added" ;;
 	publisher)
 		use publisher && [[ $(step_of_publisher) =~ done|failed ]] && ask 2 && use publisher && [ "$(step_of_publisher)" = done ] &&
-			"$content" verify "$work/release" >"$work/said" 2>&1 || fault "publisher: $2 call $4: the next request is not carried out" ;;
+			"$content" verify "$work/made" >"$work/said" 2>&1 || fault "publisher: $2 call $4: the next request is not carried out"
+		are_by_ana || fault "publisher: $2 call $4: who published is wrong" ;;
 	build | surface)
 		"$content" build "$work/fresh" --out "$work/made" --keys "$work/keys" --jobs 1 >"$work/said" 2>&1 &&
 			diff -rq "$work/reference-$1/packs" "$work/made/packs" >>"$work/said" || fault "$1: $2 call $4: the next one makes another release" ;;
