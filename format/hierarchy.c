@@ -10,6 +10,7 @@
 #include <zstd.h>
 
 #include "format/patch.h"
+#include "format/unpack.h"
 
 enum {
 	VERSION = 1,
@@ -232,9 +233,10 @@ static int unpack_rows(uint8_t *rows, uint8_t *columns, const struct hierarchy *
 	size_t group_bytes = hierarchy->group_count * (size_t)GROUP_BYTES;
 	size_t patch_bytes = hierarchy->patch_count * (size_t)PATCH_BYTES;
 
-	if (ZSTD_decompress(columns, group_bytes + patch_bytes, packed.data, packed.size) !=
-	    group_bytes + patch_bytes)
-		return -EBADMSG;
+	int rc = unpack_zstd(columns, group_bytes + patch_bytes, packed);
+
+	if (rc < 0)
+		return rc;
 	transpose(rows, columns, GROUP_BYTES, hierarchy->group_count);
 	transpose(rows + group_bytes, columns + group_bytes, PATCH_BYTES, hierarchy->patch_count);
 	return 0;

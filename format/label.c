@@ -9,6 +9,8 @@
 
 #include <zstd.h>
 
+#include "format/unpack.h"
+
 enum {
 	VERSION = 1,
 	PAGE_VERSION = 1,
@@ -364,8 +366,8 @@ int label_group_decode(struct label_group *out, struct bytes object)
 	raw = malloc((size_t)raw_size + 1);
 	out->patches = take(out->patch_count, sizeof(*out->patches));
 	rc = raw && out->patches ? 0 : -ENOMEM;
-	if (rc == 0 && ZSTD_decompress(raw, raw_size, packed.data, packed.size) != raw_size)
-		rc = -EBADMSG;
+	if (rc == 0)
+		rc = unpack_zstd(raw, raw_size, packed);
 	if (rc == 0)
 		rc = read_raw(out, (struct bytes){ raw, raw_size });
 	free(raw);

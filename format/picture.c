@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <jerror.h>
 #include <jpeglib.h>
 #include <png.h>
 
@@ -39,17 +40,23 @@ void picture_finish(struct picture *picture)
 
 /* ---- PNG, with libpng's simplified interface, which handles its own errors */
 
+/* libpng tells what was wrong in words only; all that have it mean a lack of it. */
+static int png_failure(const png_image *image)
+{
+	return strstr(image->message, "memory") ? -ENOMEM : -EBADMSG;
+}
+
 static int decode_png(struct picture *out, struct bytes file, uint32_t side_most_px)
 {
 	png_image image = { .version = PNG_IMAGE_VERSION };
 	int rc;
 
 	if (!png_image_begin_read_from_memory(&image, file.data, file.size))
-		return -EBADMSG;
+		return png_failure(&image);
 	image.format = PNG_FORMAT_RGBA;
 	rc = allocate(out, image.width, image.height, side_most_px);
 	if (rc == 0 && !png_image_finish_read(&image, NULL, out->rgba, 0, NULL))
-		rc = -EBADMSG;
+		rc = png_failure(&image);
 	png_image_free(&image);
 	return rc;
 }
@@ -137,7 +144,7 @@ static int decode_jpeg(struct picture *out, struct bytes file, uint32_t side_mos
 	codec.err = jpeg_errors(&failure);
 	if (setjmp(failure.jump)) {
 		jpeg_destroy_decompress(&codec);
-		return -EBADMSG;
+		return failure.manager.msg_code == JERR_OUT_OF_MEMORY ? -ENOMEM : -EBADMSG;
 	}
 	jpeg_create_decompress(&codec);
 	jpeg_mem_src(&codec, file.data, file.size);

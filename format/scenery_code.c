@@ -9,6 +9,7 @@
 
 #include "format/scenery_motion_code.h"
 #include "format/scenery_texture_code.h"
+#include "format/unpack.h"
 
 enum {
 	VERSION = 6,
@@ -520,8 +521,7 @@ int scenery_decode(struct scenery *out, struct bytes object)
 	raw = malloc((size_t)raw_bytes + 1);
 	if (!raw)
 		return -ENOMEM;
-	if (ZSTD_decompress(raw, raw_bytes, packed.data, packed.size) != raw_bytes)
-		rc = -EBADMSG;
+	rc = unpack_zstd(raw, raw_bytes, packed);
 	if (rc == 0)
 		rc = get_raw(out, (struct bytes){ raw, raw_bytes }, object.data[4]);
 	free(raw);

@@ -4,8 +4,9 @@
 #include <errno.h>
 #include <string.h>
 
-#include <webp/decode.h>
 #include <webp/encode.h>
+
+#include "format/unpack.h"
 
 enum {
 	SIDE_PX_MAX = 4096,
@@ -82,8 +83,7 @@ int tile_decode(uint8_t *rgb, uint32_t side_px, struct bytes object)
 
 	if (side_px == 0 || side_px > SIDE_PX_MAX)
 		return -EINVAL;
-	if (!acceptable(object, side_px) ||
-	    !WebPDecodeRGBInto(object.data, object.size, rgb, stride * side_px, (int)stride))
+	if (!acceptable(object, side_px))
 		return -EBADMSG;
-	return 0;
+	return unpack_webp(rgb, stride * side_px, side_px, false, object);
 }

@@ -18,7 +18,7 @@ must_check int tile_encode(struct buffer *out, const uint8_t *rgb, uint32_t side
 			   enum tile_effort effort);
 
 /* Decodes into rgb (side_px * side_px * 3 bytes). Returns -EBADMSG if the object is damaged or not
- * side_px square, -EINVAL if side_px is out of range. */
+ * side_px square, -EINVAL if side_px is out of range, -ENOMEM. */
 must_check int tile_decode(uint8_t *rgb, uint32_t side_px, struct bytes object);
 
 #endif

@@ -206,6 +206,8 @@ static int speak(struct speech *speech)
 
 	speech->opus = op_open_memory(speech->text.data, speech->text.size, &rc);
 	if (!speech->opus) {
+		if (rc == OP_EFAULT)
+			return -ENOMEM;
 		log_error("sound", "content bug: a spoken text is not Opus");
 		return -EBADMSG;
 	}

@@ -10,6 +10,7 @@
 #include "curator/pages/exif_orientation.h"
 #include "format/page.h"
 #include "format/picture.h"
+#include "format/unpack.h"
 #include "pipeline/import/sandbox.h"
 
 enum {
@@ -35,10 +36,7 @@ static int decode_webp(struct picture *out, struct bytes file, bool *is_png)
 	if (!out->rgba)
 		return -ENOMEM;
 	*is_png = features.has_alpha || features.format == 2;
-	return WebPDecodeRGBAInto(file.data, file.size, out->rgba,
-				  (size_t)out->width * out->height * 4, (int)out->width * 4)
-		       ? 0
-		       : -EBADMSG;
+	return unpack_webp(out->rgba, (size_t)out->width * out->height * 4, out->width, true, file);
 }
 
 static int decode(struct picture *out, struct bytes file, bool *is_png)

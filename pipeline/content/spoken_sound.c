@@ -59,6 +59,8 @@ int spoken_sound_measure(struct bytes file, bool skims, uint32_t *duration_ms)
 
 	op_free(opus);
 	*duration_ms = 0;
+	if (error == OP_EFAULT)
+		return -ENOMEM;
 	if (ms > INFO_SPOKEN_MS_MAX)
 		return -EFBIG;
 	if (!is_whole || ms <= 0)

@@ -25,7 +25,9 @@ static int unpack(struct buffer *out, struct bytes file)
 		out->size -= stream.avail_out;
 	}
 	inflateEnd(&stream);
-	return out->error ? out->error : code == Z_STREAM_END ? 0 : -EBADMSG;
+	if (out->error || code == Z_STREAM_END)
+		return out->error;
+	return code == Z_MEM_ERROR ? -ENOMEM : -EBADMSG;
 }
 
 int vrml_text(struct buffer *out, struct bytes file)

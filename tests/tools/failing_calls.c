@@ -5,6 +5,7 @@
  *                 io: open, read, write, fsync, rename, mmap, connect, epoll_wait and others fail
  *                 with FAIL_ERRNO
  *                 database: the same calls as io where SQLite makes them for the program
+ *                 codec: the same calls as memory where libraries that decode or compress make them
  *                 short: read and write of more than a byte do half of it
  *   FAIL_AT       which one, from 1; 0 or absent: none
  *   FAIL_ERRNO    a number; EIO if absent
@@ -49,7 +50,7 @@
 #define REAL(name) ((__typeof__(&(name)))dlsym(RTLD_NEXT, #name))
 #define CALLER     __builtin_return_address(0)
 
-enum kind { NOTHING, MEMORY, IO, DATABASE, SHORT };
+enum kind { NOTHING, MEMORY, IO, DATABASE, CODEC, SHORT };
 
 /* glibc's own, which need no dlsym: that allocates. */
 void *__libc_malloc(size_t size);
@@ -64,6 +65,10 @@ static struct text {
 	const char *begin, *end;
 	ptrdiff_t offset; /* of begin in the file */
 } program, database;      /* the code of the program, and that of SQLite */
+static const char *const codec_names[] = { "libjpeg",  "libpng", "libzstd.",
+					   "libwebp.", "libz.",  "libopusfile" };
+enum { CODECS = sizeof(codec_names) / sizeof(codec_names[0]) };
+static struct text codecs[CODECS];
 static const char *once_path, *left_path;
 static bool was_open[256]; /* descriptors, when the process began */
 static bool is_other;      /* not the process of FAIL_PROGRAM */
@@ -73,11 +78,29 @@ static bool is_in(const struct text *text, const char *at)
 	return at >= text->begin && at < text->end;
 }
 
+static bool is_in_codec(const char *at)
+{
+	for (int i = 0; i < CODECS; i++)
+		if (is_in(&codecs[i], at))
+			return true;
+	return false;
+}
+
+static struct text *text_of(const char *name)
+{
+	if (!program.begin)
+		return &program; /* the first */
+	if (strstr(name, "libsqlite3"))
+		return &database;
+	for (int i = 0; i < CODECS; i++)
+		if (strstr(name, codec_names[i]))
+			return &codecs[i];
+	return NULL;
+}
+
 static int find_text(struct dl_phdr_info *info, size_t size, void *data)
 {
-	struct text *text = !program.begin                          ? &program
-			    : strstr(info->dlpi_name, "libsqlite3") ? &database
-								    : NULL;
+	struct text *text = text_of(info->dlpi_name);
 
 	(void)size;
 	(void)data;
@@ -90,7 +113,7 @@ static int find_text(struct dl_phdr_info *info, size_t size, void *data)
 		text->end = text->begin + part->p_memsz;
 		text->offset = (ptrdiff_t)part->p_vaddr;
 	}
-	return 0; /* the first is the program itself */
+	return 0;
 }
 
 /* Adds a line to the file of FAIL_ONCE. */
@@ -150,6 +173,7 @@ __attribute__((constructor)) static void begin(void)
 		kind = !strcmp(what, "memory")     ? MEMORY
 		       : !strcmp(what, "io")       ? IO
 		       : !strcmp(what, "database") ? DATABASE
+		       : !strcmp(what, "codec")    ? CODEC
 		       : !strcmp(what, "short")    ? SHORT
 						   : NOTHING;
 }
@@ -201,6 +225,7 @@ static bool fails(enum kind of, const void *caller, const char *name)
 	const char *from = caller;
 
 	if (kind == DATABASE ? of != IO || !is_in(&database, from)
+	    : kind == CODEC  ? of != MEMORY || !is_in_codec(from)
 			     : of != kind || !is_in(&program, from))
 		return false;
 	return __atomic_add_fetch(&calls, 1, __ATOMIC_RELAXED) == fail_at && is_first(name);
