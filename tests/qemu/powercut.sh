@@ -1,16 +1,13 @@
 #!/bin/bash
 # Cuts the power while the appliance runs in QEMU, at points of the log of its disk's writes (powercut.py,
-# docs/powercut.md). CUTS=N cuts (1, with a look at 6 more disks), SEED=N others; "system": the session contains an
-# update of the system. Failed cuts are kept in build/qemu-image/powercut, and CUT=N with its SEED makes the same disk
-# again while the same session exists. With ARCH=arm64 the image of that architecture, in build/qemu-image-arm64.
+# docs/powercut.md). CUTS=N cuts (1, with a look at 6 more disks), SEED=N others; "system": the session contains an update of the system. Failed cuts
+# are kept in build/qemu-image/powercut, and CUT=N with its SEED makes the same disk again while the same session
+# exists.
 set -eu
 cd "$(dirname "$0")/../.."
 skip() { echo "$*"; exit 77; }
-. image/arch.sh
-for list in image/tools.txt "${tools[@]}"; do
-	./deps.sh "$list" || skip "what makes an image cannot be installed here"
-done
-image=build/qemu-$(basename "$image_folder")/image work=build/qemu-$(basename "$image_folder")/powercut
+./deps.sh image/tools.txt || skip "what makes an image cannot be installed here"
+image=build/qemu-image/image work=build/qemu-image/powercut
 sticks=$work/sticks
 mkdir -p "$sticks"
 tests/qemu/lib-image.sh "$image"
