@@ -12,11 +12,16 @@
 #   SAMPLES=N               so many of each, spread over all, and one errno of several (default 1; all: 0)
 #   USES="verify build"     of these alone
 #   KINDS="memory io"       and of these calls (memory codec io short database)
+#   SHARE=1/2               the first of two halves, so that another process may run the second one
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
 . tests/e2e/lib-content.sh
-work=build/e2e/torture samples=${SAMPLES:-1}
+share=${SHARE:-1/1} samples=${SAMPLES:-1}
+part=${share%/*} parts=${share#*/}
+[[ $share =~ ^[1-9][0-9]*/[1-9][0-9]*$ ]] && [ "$part" -le "$parts" ] || fail "SHARE=$share: give one as 1/2"
+work=build/e2e/torture
+[ "$parts" = 1 ] || work=$work-$part-of-$parts
 trap 'end_visits; stop_server' EXIT
 rm -rf "$work"
 mkdir -p "$work/content"
@@ -123,7 +128,7 @@ says_tuf() { python3 -c 'import base64, json, sys; sys.exit("tuf_root" not in js
 are_by_ana() { python3 -c 'import json, sys; sys.exit(any((one["by"] == "ana") != (one["sequence"] > 1) for one in json.load(open(sys.argv[1]))["releases"]))' "$work/new/.curator/publish/releases.json"; }
 step_of_publisher() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["step"])' "$work/new/.curator/publish/state.json"; }
 
-runs=0 survived=0 faults=0
+tried=0 runs=0 survived=0 faults=0
 fault() { faults=$((faults + 1)); echo "  FAULT $*"; sed 's/^/        /' "$work/said" "$work/once" 2>/dev/null | tail -n 6; }
 
 # Nothing is damaged here: a lack of memory or a failed call is no fault of a file.
@@ -201,7 +206,11 @@ all() {
 	[ "$samples" -le 1 ] || ! is_slow_visit "$1" || most=$((samples / 2))
 	[ "$samples" = 0 ] || step=$(((calls + most - 1) / most))
 	[ "$step" -gt 0 ] || step=1
-	for ((n = 1 + RANDOM % step; n <= calls; n += step)); do strain "$1" "$2" "$3" "$n"; done
+	for ((n = 1 + RANDOM % step; n <= calls; n += step)); do
+		[ $((tried++ % parts)) = $((part - 1)) ] || continue
+		strain "$1" "$2" "$3" "$n"
+		[ $((runs % 100)) != 0 ] || echo "  $1: $2 call $n of $calls, $runs runs, $faults faults"
+	done
 	echo "$1: $calls calls of $2, errno $3"
 }
 
