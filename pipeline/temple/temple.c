@@ -15,8 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STATIONS_MAX = 1 << 17, ROWS_KEPT = 3, VERTEX_BYTES = 16, QUAD_BYTES = 2 * 13 };
-enum { OUT_BYTES = STATIONS_MAX * QUAD_BYTES };
+enum { STATIONS_MAX = 1 << 17, ROWS_KEPT = 3 };
+enum { VERTEX_BYTES = 16, QUAD_BYTES = 2 * 13, OUT_BYTES = 1 << 16 };
 
 struct row {
 	float (*positions)[3];
@@ -32,7 +32,7 @@ struct writer {
 	uint64_t vertices, triangles; /* of the whole temple */
 	struct station *across, *up;  /* STATIONS_MAX each */
 	struct row rows[ROWS_KEPT];
-	uint8_t *out; /* OUT_BYTES for what is to be written, the longest row at least */
+	uint8_t out[OUT_BYTES]; /* what is to be written */
 	size_t out_bytes;
 };
 
@@ -143,11 +143,10 @@ static int write_out(struct writer *w)
 	return fwrite(w->out, 1, bytes, w->file) == bytes ? 0 : -EIO;
 }
 
-/* Where the next bytes of the file, at most OUT_BYTES, are to be put; NULL if those before could
- * not be written. */
+/* Where the next bytes of the file are to be put; NULL if those before could not be written. */
 static uint8_t *next_out(struct writer *w, size_t bytes)
 {
-	if (w->out_bytes + bytes > OUT_BYTES && write_out(w) < 0)
+	if (w->out_bytes + bytes > sizeof(w->out) && write_out(w) < 0)
 		return NULL;
 	w->out_bytes += bytes;
 	return w->out + w->out_bytes - bytes;
@@ -160,11 +159,11 @@ static int write_row(struct writer *w, const struct sheet *sheet, uint32_t colum
 	const struct row *below = row ? &w->rows[(row - 1) % ROWS_KEPT] : here;
 	const struct row *above = row + 1 < rows ? &w->rows[(row + 1) % ROWS_KEPT] : here;
 	bool wraps = sheet_wraps(sheet);
-	uint8_t *out = next_out(w, (size_t)columns * VERTEX_BYTES);
 
-	if (!out)
-		return -EIO;
-	for (uint32_t i = 0; i < columns; i++, out += VERTEX_BYTES) {
+	for (uint32_t i = 0; i < columns; i++) {
+		uint8_t *out = next_out(w, VERTEX_BYTES);
+		if (!out)
+			return -EIO;
 		uint32_t left = i ? i - 1 : wraps ? columns - 1 : 0;
 		uint32_t right = i + 1 < columns ? i + 1 : wraps ? 0 : i;
 		float normal[3], spacing_m;
@@ -200,10 +199,10 @@ static int write_triangles(struct writer *w, const struct sheet *sheet, uint32_t
 	uint32_t quads = sheet_wraps(sheet) ? columns : columns ? columns - 1 : 0;
 
 	for (uint32_t row = 0; row + 1 < rows; row++) {
-		uint8_t *out = next_out(w, (size_t)quads * QUAD_BYTES);
-		if (!out)
-			return -EIO;
-		for (uint32_t i = 0; i < quads; i++, out += QUAD_BYTES) {
+		for (uint32_t i = 0; i < quads; i++) {
+			uint8_t *out = next_out(w, QUAD_BYTES);
+			if (!out)
+				return -EIO;
 			uint32_t a = (uint32_t)first + row * columns + i;
 			uint32_t b = (uint32_t)first + row * columns + (i + 1) % columns;
 			out[0] = 3;
@@ -282,8 +281,7 @@ static int list_bodies(const struct writer *w, struct temple_bodies *out)
 
 static int writer_rooms(struct writer *w)
 {
-	w->out = malloc(OUT_BYTES);
-	bool whole = w->out;
+	bool whole = true;
 
 	w->across = calloc(STATIONS_MAX, sizeof(*w->across));
 	w->up = calloc(STATIONS_MAX, sizeof(*w->up));
@@ -303,7 +301,6 @@ static void writer_finish(struct writer *w)
 	}
 	free(w->across);
 	free(w->up);
-	free(w->out);
 	sky_destroy(w->sky);
 	plan_destroy(&w->plan);
 }
