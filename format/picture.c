@@ -40,10 +40,31 @@ void picture_finish(struct picture *picture)
 
 /* ---- PNG, with libpng's simplified interface, which handles its own errors */
 
+enum { PNG_START_BYTES = 8, PNG_CHUNK_BYTES = 12 /* length, name, check */ };
+
 /* libpng tells what was wrong in words only; all that have it mean a lack of it. */
 static int png_failure(const png_image *image)
 {
 	return strstr(image->message, "memory") ? -ENOMEM : -EBADMSG;
+}
+
+/* libpng makes room for what a chunk says it has before it reads it: 2 GiB for a file of a hundred
+ * bytes. */
+static bool chunks_fit(struct bytes file)
+{
+	size_t at = PNG_START_BYTES;
+
+	while (file.size - at >= PNG_CHUNK_BYTES) {
+		const size_t left = file.size - at - PNG_CHUNK_BYTES;
+		const uint32_t bytes = png_get_uint_32(file.data + at);
+
+		if (memcmp(file.data + at + 4, "IEND", 4) == 0)
+			return true;
+		if (bytes > left)
+			return false;
+		at += PNG_CHUNK_BYTES + bytes;
+	}
+	return true;
 }
 
 static int decode_png(struct picture *out, struct bytes file, uint32_t side_most_px)
@@ -51,6 +72,8 @@ static int decode_png(struct picture *out, struct bytes file, uint32_t side_most
 	png_image image = { .version = PNG_IMAGE_VERSION };
 	int rc;
 
+	if (!chunks_fit(file))
+		return -EBADMSG;
 	if (!png_image_begin_read_from_memory(&image, file.data, file.size))
 		return png_failure(&image);
 	image.format = PNG_FORMAT_RGBA;
@@ -223,6 +246,7 @@ static int decode(struct picture *out, struct bytes file, uint32_t side_most_px)
 	int rc = -EBADMSG;
 
 	*out = (struct picture){ 0 };
+	_Static_assert(sizeof(png_start) == PNG_START_BYTES, "decode_png skips it");
 	if (file.size >= sizeof(png_start) && memcmp(file.data, png_start, sizeof(png_start)) == 0)
 		rc = decode_png(out, file, side_most_px);
 	else if (file.size >= 2 && file.data[0] == 0xff && file.data[1] == 0xd8)

@@ -121,6 +121,28 @@ static void refuses_a_huge_jpeg_before_room_is_made_for_it(void **state)
 	buffer_finish(&file);
 }
 
+/* libpng would make room for 2 GiB. */
+static void refuses_a_png_with_a_chunk_longer_than_the_file(void **state)
+{
+	static const uint8_t chunk[] = { 0x7f, 0xff, 0xff, 0xff, 'z', 'T', 'X', 't', 'k', 0, 0, 1 };
+	enum { HEADER_BYTES = 8 + 12 + 13 };
+	struct picture picture = gradient(), back;
+	struct buffer file, longer;
+
+	(void)state;
+	buffer_init(&file, 1 << 20);
+	buffer_init(&longer, 1 << 20);
+	CHECK(picture_encode_png(&file, &picture) == 0);
+	buffer_put(&longer, file.data, HEADER_BYTES);
+	buffer_put(&longer, chunk, sizeof(chunk));
+	buffer_put(&longer, file.data + HEADER_BYTES, file.size - HEADER_BYTES);
+	CHECK(picture_decode(&back, buffer_bytes(&longer)) == -EBADMSG);
+	CHECK(back.rgba == NULL);
+	picture_finish(&picture);
+	buffer_finish(&longer);
+	buffer_finish(&file);
+}
+
 static void refuses_every_truncated_file(void **state)
 {
 	struct picture picture = gradient();
@@ -144,6 +166,7 @@ int main(void)
 		cmocka_unit_test(jpeg_is_near_and_opaque),
 		cmocka_unit_test(a_full_buffer_keeps_what_it_had),
 		cmocka_unit_test(refuses_a_huge_jpeg_before_room_is_made_for_it),
+		cmocka_unit_test(refuses_a_png_with_a_chunk_longer_than_the_file),
 		cmocka_unit_test(refuses_every_truncated_file),
 	};
 
