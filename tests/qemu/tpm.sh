@@ -29,4 +29,7 @@ truncate -s +4096 "$work/vmlinuz" "$work/initrd"
 KEYS=${KEYS:-build/image-keys} SOURCE_DATE_EPOCH=$(date +%s) image/loader-keys.sh sign "$work"/{vmlinuz,initrd} 2>"$work/sign.log"
 for file in {vmlinuz,initrd}{,.sig}; do printf 'rm /%s\nwrite %s /%s\n' "$file" "$work/$file" "$file"; done |
 	debugfs -w -f - "$work/boot.img" >"$work/debugfs.log" 2>&1
+for file in {vmlinuz,initrd}{,.sig}; do # debugfs ends with 0 whatever happened
+	debugfs -R "cat /$file" "$work/boot.img" 2>/dev/null | cmp - "$work/$file"
+done
 python3 tests/qemu/tpm.py "$image/gopura.img" "$work" "$@"
