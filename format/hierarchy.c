@@ -232,7 +232,6 @@ static int unpack_rows(uint8_t *rows, uint8_t *columns, const struct hierarchy *
 {
 	size_t group_bytes = hierarchy->group_count * (size_t)GROUP_BYTES;
 	size_t patch_bytes = hierarchy->patch_count * (size_t)PATCH_BYTES;
-
 	int rc = unpack_zstd(columns, group_bytes + patch_bytes, packed);
 
 	if (rc < 0)

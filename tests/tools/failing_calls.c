@@ -68,7 +68,7 @@ static struct text {
 static const char *const codec_names[] = { "libjpeg",  "libpng", "libzstd.",
 					   "libwebp.", "libz.",  "libopusfile" };
 enum { CODECS = sizeof(codec_names) / sizeof(codec_names[0]) };
-static struct text codecs[CODECS];
+static struct text codecs[CODECS]; /* of each, where the program has it */
 static const char *once_path, *left_path;
 static bool was_open[256]; /* descriptors, when the process began */
 static bool is_other;      /* not the process of FAIL_PROGRAM */

@@ -60,7 +60,7 @@ def check(path):
     judge("cache.db", max(series(rows, "cache_bytes")) / 1e6, max(series(rows, "cache_budget_bytes")) / 1e6, "MB")
     judge("other files of the state", max(series(rows, "state_bytes")) / 1e6, MOST_STATE / 1e6, "MB")
     is_year = "day" in rows[0]
-    written = [bytes * (1 if is_year else 24 * 60 / MINUTES) for bytes in series(warm, "written_bytes")]
+    written = [size * (1 if is_year else 24 * 60 / MINUTES) for size in series(warm, "written_bytes")]
     judge("written in a day, mean", statistics.fmean(written) / 1e6, MOST_WRITTEN / 1e6, "MB")
     if is_year:
         judge("written in a day, most", max(written) / 1e6, MOST_WRITTEN / 1e6, "MB")
