@@ -57,7 +57,6 @@ struct fetch {
 	struct asked_file *asked;
 	struct stick *stick;            /* NULL: no stick is used */
 	struct metrics_socket *metrics; /* NULL: not offered */
-	uint32_t root_version;          /* version of the trust root that the kiosk has */
 	/* the last status sent */
 	struct message_status sent_status;
 	int64_t flush_ms, status_ms; /* when due (clock_now_ms) */
@@ -217,9 +216,6 @@ static int handle_message(struct fetch *fetch, const struct message *message)
 		stick_forget(fetch->stick); /* so that the stick's metadata is sent again */
 		return 0;
 	case MESSAGE_TRUST:
-		if (message->root_version != fetch->root_version)
-			stick_forget(fetch->stick); /* may be valid under this root */
-		fetch->root_version = message->root_version;
 		stick_trust(fetch->stick, message->root_version);
 		poll_trust(fetch->poll, message->root_version);
 		return 0;

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
@@ -14,6 +13,7 @@
 #include "base/array.h"
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/thread.h"
 #include "format/page.h"
 #include "net/stick_reader.h"
 
@@ -182,18 +182,6 @@ static void set_state(struct worker *worker, enum worker_state state)
 
 /* ---- create, destroy */
 
-static int start_thread(struct stick *stick)
-{
-	sigset_t all, before;
-	int rc;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	rc = -pthread_create(&stick->thread, NULL, run, stick->worker);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return rc;
-}
-
 static int create_worker(struct worker **out, const char *folder)
 {
 	struct worker *worker = calloc(1, sizeof(*worker));
@@ -227,7 +215,7 @@ int stick_create(struct stick **out, const struct stick_options *options)
 		stick->options.patience_ms = PATIENCE_MS;
 	rc = create_worker(&stick->worker, options->folder);
 	if (rc == 0)
-		rc = start_thread(stick);
+		rc = thread_start(&stick->thread, NULL, run, stick->worker);
 	if (rc < 0) {
 		if (stick->worker)
 			worker_free(stick->worker);
@@ -286,8 +274,10 @@ void stick_forget(struct stick *stick)
 
 void stick_trust(struct stick *stick, uint32_t root_version)
 {
-	if (stick)
-		stick->root_version = root_version;
+	if (!stick || root_version == stick->root_version)
+		return;
+	stick->root_version = root_version;
+	stick_forget(stick);
 }
 
 bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
@@ -296,8 +286,10 @@ bool stick_request(struct stick *stick, const struct hash *roots, size_t count,
 	if (!stick || !stick->is_here || stick->hangs)
 		return false;
 	if (ARRAY_RESERVE(stick->requests, stick->request_room, stick->request_count + 1,
-			  UINT32_MAX) < 0)
+			  UINT32_MAX) < 0) {
+		stick->forgets = true; /* the next look reports the stick again */
 		return false;
+	}
 	stick->root_count = count < MESSAGE_RELEASES_MAX ? count : MESSAGE_RELEASES_MAX;
 	memcpy(stick->roots, roots, stick->root_count * sizeof(*roots));
 	stick->requests[stick->request_count++] = (struct request){ *want, stick->orders++ };
@@ -408,7 +400,8 @@ static bool finish_look(struct stick *stick)
 	log_info("net", "found a stick with a release: %s/%s", stick->worker->reader.folder,
 		 stick->worker->reader.below);
 	stick->is_here = true;
-	for (size_t i = 0; i < job->file_count; i++)
+	/* Metadata that was read for another root may be of another form; the next look reads. */
+	for (size_t i = 0; i < job->file_count && job->root_version == stick->root_version; i++)
 		stick->options.meta(stick->options.data, job->files[i].role, job->files[i].version,
 				    buffer_bytes(&job->files[i].bytes));
 	return true;

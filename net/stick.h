@@ -47,7 +47,8 @@ int64_t stick_due_ms(const struct stick *stick, bool has_room);
 /* Reports everything again at the next look, because another kiosk asks. */
 void stick_forget(struct stick *stick);
 /* Sets the version of the kiosk's trust root. Roots after this version are reported; with
- * MESSAGE_TRUST_TUF, tuf/timestamp.json is reported alone. */
+ * MESSAGE_TRUST_TUF, tuf/timestamp.json is reported alone. Another version than before forgets too,
+ * and what a look that is under way reads is not reported. */
 void stick_trust(struct stick *stick, uint32_t root_version);
 
 /* Requests an object, to be found by the locators of these releases (newest first). The releases of

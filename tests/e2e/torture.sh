@@ -132,7 +132,7 @@ tried=0 runs=0 survived=0 faults=0
 fault() { faults=$((faults + 1)); echo "  FAULT $*"; sed 's/^/        /' "$work/said" "$work/once" 2>/dev/null | tail -n 6; }
 
 # Nothing is damaged here: a lack of memory or a failed call is no fault of a file.
-blames() { grep -v '"damaged":0' "$work/said" | grep -qE 'content bug|damaged|does not decode|not a complete'; }
+blames() { grep -v '"damaged":0' "$work/said" | grep -E 'content bug|damaged|does not decode|not a complete' >"$work/blamed"; }
 # strain NAME KIND ERRNO N
 strain() {
 	local status=0
@@ -142,7 +142,7 @@ strain() {
 	[ "$status" != 0 ] || survived=$((survived + 1))
 	[ "$status" -le 3 ] || fault "$1: $2 call $4 (errno $3) ended it with status $status"
 	[ "$status" = 0 ] || [ -s "$work/said" ] || fault "$1: $2 call $4 (errno $3): it failed without a word"
-	! blames || fault "$1: $2 call $4 (errno $3): it blames what is whole"
+	! blames || fault "$1: $2 call $4 (errno $3): it blames what is whole: $(head -n 1 "$work/blamed")"
 	is_visit "$1" && { check_visit "$1" "$status" "$1: $2 call $4 (errno $3)"; return; }
 	! makes "$1" || { check_made "$1" "$status" "$1: $2 call $4 (errno $3)"; return; }
 	case $1 in

@@ -254,8 +254,9 @@ static void tells_the_roots_after_the_one_that_the_kiosk_has(void **state)
 	CHECK(look(stage));
 	CHECK(strcmp(stage->said, "root71:B root72:C timestamp0:T release0:R ") == 0);
 	stick_trust(stage->stick, 72);
-	stick_forget(stage->stick);
 	CHECK(look(stage) && strcmp(stage->said, "timestamp0:T release0:R ") == 0);
+	stick_trust(stage->stick, 72);
+	CHECK(!look(stage));
 }
 
 static void make_folder(const struct stage *stage, const char *name)
@@ -264,6 +265,21 @@ static void make_folder(const struct stage *stage, const char *name)
 
 	in_folder(stage, path, name);
 	CHECK(mkdir(path, 0755) == 0);
+}
+
+/* The kiosk tells its root while the stick is looked at for the first time. */
+static void tells_nothing_that_was_read_for_another_root(void **state)
+{
+	struct stage *stage = *state;
+
+	put_release(stage, "", "T");
+	make_folder(stage, "tuf");
+	put_text(stage, "tuf/timestamp.json", "of TUF");
+	now_ms += 5000;
+	CHECK(!stick_work(stage->stick, true));
+	stick_trust(stage->stick, MESSAGE_TRUST_TUF);
+	CHECK(work(stage) && stage->said[0] == '\0');
+	CHECK(work(stage) && strcmp(stage->said, "timestamp0:of TUF ") == 0);
 }
 
 /* Returns the answer; stage->text is what is in the file. */
@@ -525,6 +541,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		STAGED(tells_of_a_stick_once),
 		STAGED(brings_files_of_tuf_by_name),
+		STAGED(tells_nothing_that_was_read_for_another_root),
 		STAGED(tells_the_roots_after_the_one_that_the_kiosk_has),
 		STAGED(finds_a_folder_named_release),
 		STAGED(gives_objects_by_the_locator),
