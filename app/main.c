@@ -8,12 +8,14 @@
 #include "app/modes/self_test.h"
 #include "app/settings/heap.h"
 #include "app/settings/options.h"
+#include "base/crash.h"
 
 int main(int argc, char **argv)
 {
 	static struct kiosk kiosk;
 	int rc;
 
+	crash_tell("app");
 	heap_prepare();
 	switch (options_parse(&kiosk.options, argc, argv)) {
 	case OPTIONS_DONE:

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/crash.h"
 #include "base/log.h"
 #include "curator/accounts/gate.h"
 #include "curator/publisher_command.h"
@@ -230,6 +231,7 @@ int main(int argc, char **argv)
 	struct gate *gate = NULL;
 	int rc;
 
+	crash_tell("curator");
 	if (argc > 1 && strcmp(argv[1], "user") == 0)
 		return user_command(argc - 1, argv + 1);
 	if (argc > 1 && strcmp(argv[1], "publisher") == 0)

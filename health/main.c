@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/crash.h"
 #include "base/log.h"
 #include "health/server.h"
 #include "health/web_page.h"
@@ -285,6 +286,7 @@ int main(int argc, char **argv)
 	};
 	int rc;
 
+	crash_tell("health");
 	parse(&health, argc, argv);
 	snapshot_init(&health.snapshot);
 	rc = run(&health);

@@ -3,13 +3,13 @@
 #include "net/closer.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/log.h"
+#include "base/thread.h"
 
 enum { STACK_BYTES = 256 << 10 };
 
@@ -29,16 +29,12 @@ static int start_thread(int fd)
 {
 	pthread_attr_t attributes;
 	pthread_t thread;
-	sigset_t all, before;
 	int rc;
 
-	sigfillset(&all);
 	pthread_attr_init(&attributes);
 	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
 	pthread_attr_setstacksize(&attributes, STACK_BYTES);
-	pthread_sigmask(SIG_SETMASK, &all, &before); /* signals are handled by the loop */
-	rc = pthread_create(&thread, &attributes, close_one, (void *)(intptr_t)fd);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	rc = thread_start(&thread, &attributes, close_one, (void *)(intptr_t)fd);
 	pthread_attr_destroy(&attributes);
 	return rc;
 }
@@ -51,9 +47,9 @@ void closer_close(int fd)
 		return;
 	atomic_fetch_add(&running, 1);
 	rc = start_thread(fd);
-	if (rc != 0) /* the descriptor stays open; that is better than a loop that hangs */
+	if (rc < 0) /* the descriptor stays open; that is better than a loop that hangs */
 		log_error("net", "cannot start the thread that closes descriptors: %s",
-			  strerror(rc));
+			  strerror(-rc));
 }
 
 bool closer_is_full(void)

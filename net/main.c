@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/crash.h"
 #include "base/log.h"
 #include "net/fetch.h"
 #include "net/redirect.h"
@@ -193,6 +194,7 @@ int main(int argc, char **argv)
 					 .poll_s = 60 };
 	int rc;
 
+	crash_tell("net");
 	parse(&options, argc, argv);
 	rc = fetch_run(&options);
 	if (rc < 0)

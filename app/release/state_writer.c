@@ -4,12 +4,12 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "base/log.h"
+#include "base/thread.h"
 
 /* The changes that are requested. The thread takes the struct over, with its buffers. */
 struct wish {
@@ -129,20 +129,6 @@ static void *run(void *data)
 
 /* ---- on the caller's thread */
 
-/* Starts the thread with all signals blocked, because the loop handles them. */
-static int start_thread(struct state_writer *writer)
-{
-	sigset_t all, before;
-	int rc;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	rc = -pthread_create(&writer->thread, NULL, run, writer);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	writer->has_thread = rc == 0;
-	return rc;
-}
-
 int state_writer_create(struct state_writer **out, struct state *state)
 {
 	struct state_writer *writer = calloc(1, sizeof(*writer));
@@ -158,7 +144,8 @@ int state_writer_create(struct state_writer **out, struct state *state)
 	pthread_mutex_init(&writer->lock, NULL);
 	pthread_cond_init(&writer->asked, NULL);
 	writer->fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-	rc = writer->fd < 0 ? -errno : start_thread(writer);
+	rc = writer->fd < 0 ? -errno : thread_start(&writer->thread, NULL, run, writer);
+	writer->has_thread = rc == 0;
 	if (rc < 0) {
 		state_writer_destroy(writer);
 		return rc;

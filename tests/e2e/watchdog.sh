@@ -72,3 +72,14 @@ managed safe build/gopura-kiosk --safe-page --display headless --size 640x360
 is_well safe
 managed fetch build/gopura-fetch --release "$release" --cache "$work/cache.db" --socket "$work/socket"
 is_well fetch
+
+# What the manager sends to a program that hangs leaves the place where it hung.
+build/gopura-fetch --release "$release" --cache "$work/ended.db" --socket "$work/ended" 2>"$work/ended.log" &
+pid=$!
+wait_for 20 "the fetcher's socket" test -S "$work/ended"
+kill -ABRT "$pid"
+status=0
+wait "$pid" || status=$?
+[ "$status" = 134 ] || fail "SIGABRT ended it with status $status"
+grep -q 'net: crashed by SIGABRT' "$work/ended.log" && grep -q 'gopura-fetch(+0x' "$work/ended.log" ||
+	{ cat "$work/ended.log"; fail "it does not tell where it was"; }
