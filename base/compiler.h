@@ -11,7 +11,7 @@
 
 /* For functions with loops over many numbers: compiled once more for each kind of vector unit, and
  * the processor's own is chosen when the program starts. All give the same bits. */
-#if defined(__x86_64__) && !defined(__clang__)
+#if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define vector_clones __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
 #else
 #define vector_clones

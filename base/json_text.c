@@ -14,6 +14,8 @@
 #define JSMN_PARENT_LINKS
 #include <jsmn.h>
 
+#include "base/json_tree.h"
+
 #define BYTE_ORDER_MARK "\xef\xbb\xbf"
 
 struct walk {
@@ -89,6 +91,7 @@ int json_text_parse(struct json_text *out, struct buffer *buffer, const char *fi
 		    struct diagnostics *diagnostics)
 {
 	const char *text, *end;
+	int rc;
 
 	*out = (struct json_text){ 0 };
 	buffer_put_u8(buffer, 0);
@@ -101,11 +104,19 @@ int json_text_parse(struct json_text *out, struct buffer *buffer, const char *fi
 	if (!g_utf8_validate(text, -1, &end)) /* cJSON does not check this */
 		return diagnostics_add(diagnostics, -EBADMSG, file, line_of(text, end),
 				       "is not UTF-8 from here on: save it as UTF-8");
-	out->root = cJSON_ParseWithOpts(text, &end, true);
-	if (!out->root)
+	/* With the zero, or cJSON would give the last byte as the place of what is missing at the
+	 * end. */
+	rc = json_parse_to(&out->root, (struct bytes){ buffer->data, strlen(text) + 1 }, &end);
+	while (rc == 0 && *end && (unsigned char)*end <= ' ')
+		end++; /* as cJSON does between values */
+	if (rc == -ENOMEM)
+		return rc;
+	if (rc < 0 || *end) {
+		json_text_finish(out);
 		return diagnostics_add(diagnostics, -EBADMSG, file, line_of(text, end),
 				       "is not valid JSON from here on: look for a missing comma, "
 				       "quote or bracket");
+	}
 	return find_lines(out, text);
 }
 

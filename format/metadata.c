@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "format/metadata_parts.h"
 #include "format/page.h"
 
@@ -32,32 +33,16 @@ struct envelope {
 static int refuse(const char **why, int code, const char *text)
 {
 	if (why)
-		*why = text;
+		*why = code == -ENOMEM ? "no memory is left" : text;
 	return code;
 }
 
 /* ---- JSON, strictly ---- */
 
-static bool only_space_after(const char *at, const char *end)
+static int parse_object(cJSON **out, struct bytes text)
 {
-	while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t'))
-		at++;
-	return at == end;
-}
-
-/* Returns NULL unless text is one JSON object and nothing else. The caller deletes it. */
-static cJSON *parse_object(struct bytes text)
-{
-	const char *start = (const char *)text.data, *end = NULL;
-	cJSON *json;
-
-	if (text.size == 0 || text.size > METADATA_FILE_BYTES_MAX)
-		return NULL;
-	json = cJSON_ParseWithLengthOpts(start, text.size, &end, 0);
-	if (json && cJSON_IsObject(json) && only_space_after(end, start + text.size))
-		return json;
-	cJSON_Delete(json);
-	return NULL;
+	*out = NULL;
+	return text.size > METADATA_FILE_BYTES_MAX ? -EBADMSG : json_parse_object(out, text);
 }
 
 /* Returns the member of that name, or NULL if there is none or more than one: of two, another
@@ -168,13 +153,13 @@ static int read_payload(struct envelope *envelope, const char *text)
 
 static int envelope_open(struct envelope *envelope, struct bytes file)
 {
-	cJSON *json = parse_object(file);
-	int rc;
+	cJSON *json;
+	int rc = parse_object(&json, file);
 
 	envelope->signature_count = 0;
 	buffer_init(&envelope->payload, METADATA_FILE_BYTES_MAX);
-	if (!json)
-		return -EBADMSG;
+	if (rc < 0)
+		return rc;
 	rc = cJSON_GetArraySize(json) == 2 ? read_payload(envelope, text_member(json, "payload"))
 					   : -EBADMSG;
 	if (rc == 0)
@@ -211,18 +196,22 @@ static int check_signatures(const struct envelope *envelope, enum meta_role role
 	return rc;
 }
 
-/* Returns the payload as JSON if it is of the given role, else NULL. */
-static cJSON *open_payload(const struct envelope *envelope, enum meta_role role)
+/* Parses the payload. *out is owned by the caller; NULL on failure. -EBADMSG: it is not of that
+ * role.
+ */
+static int open_payload(cJSON **out, const struct envelope *envelope, enum meta_role role)
 {
-	cJSON *json = parse_object(buffer_bytes(&envelope->payload));
-	const char *type = json ? text_member(json, "type") : NULL;
+	int rc = parse_object(out, buffer_bytes(&envelope->payload));
+	const char *type = rc == 0 ? text_member(*out, "type") : NULL;
 	uint64_t format;
 
-	if (type && strcmp(type, metadata_role_names[role]) == 0 &&
-	    whole_member(json, "format", PAYLOAD_FORMAT, PAYLOAD_FORMAT, &format))
-		return json;
-	cJSON_Delete(json);
-	return NULL;
+	if (rc == 0 && (!type || strcmp(type, metadata_role_names[role]) != 0 ||
+			!whole_member(*out, "format", PAYLOAD_FORMAT, PAYLOAD_FORMAT, &format))) {
+		cJSON_Delete(*out);
+		*out = NULL;
+		rc = -EBADMSG;
+	}
+	return rc;
 }
 
 /* ---- root ---- */
@@ -272,13 +261,14 @@ static int read_root(struct trust_root *root, const cJSON *json)
 static int open_root(struct trust_root *root, struct envelope *envelope, struct bytes file,
 		     const char **why)
 {
-	cJSON *json;
+	cJSON *json = NULL;
 	int rc = envelope_open(envelope, file);
 
 	if (rc < 0)
 		return refuse(why, rc, "the root file is not a signed metadata file");
-	json = open_payload(envelope, META_ROOT);
-	rc = json ? read_root(root, json) : -EBADMSG;
+	rc = open_payload(&json, envelope, META_ROOT);
+	if (rc == 0)
+		rc = read_root(root, json);
 	cJSON_Delete(json);
 	if (rc < 0)
 		return refuse(why, rc, "the root file's payload is not a root's");
@@ -328,9 +318,9 @@ static int open_signed(cJSON **out, enum meta_role role, const struct trust_root
 	else
 		rc = check_signatures(&envelope, role, &trust->roles[role], why);
 	if (rc == 0) {
-		*out = open_payload(&envelope, role);
-		if (!*out)
-			rc = refuse(why, -EBADMSG, "the payload is not of this role");
+		rc = open_payload(out, &envelope, role);
+		if (rc < 0)
+			rc = refuse(why, rc, "the payload is not of this role");
 	}
 	buffer_finish(&envelope.payload);
 	return rc;
@@ -375,10 +365,8 @@ int release_decode_target(struct release *out, struct bytes file, const char **w
 	int rc = envelope_open(&envelope, file);
 
 	*out = (struct release){ 0 };
-	if (rc == 0) {
-		json = open_payload(&envelope, META_RELEASE);
-		rc = json ? 0 : -EBADMSG;
-	}
+	if (rc == 0)
+		rc = open_payload(&json, &envelope, META_RELEASE);
 	rc = rc < 0 ? refuse(why, rc, "not a release file") : take_release(out, json, why);
 	cJSON_Delete(json);
 	buffer_finish(&envelope.payload);

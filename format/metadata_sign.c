@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "format/metadata_parts.h"
 
 const char *const metadata_role_names[] = { "root", "release", "timestamp" };
@@ -30,7 +31,7 @@ static bool add_base64(cJSON *object, const char *name, struct bytes bytes)
 		return false;
 	sodium_bin2base64(text, room, bytes.data, bytes.size, sodium_base64_VARIANT_ORIGINAL);
 	added = name ? cJSON_AddStringToObject(object, name, text) != NULL
-		     : cJSON_AddItemToArray(object, cJSON_CreateString(text));
+		     : json_append(object, cJSON_CreateString(text));
 	free(text);
 	return added;
 }
@@ -43,7 +44,7 @@ static bool add_signature(cJSON *list, const struct signing_key *key, struct byt
 
 	crypto_sign_detached(signature, NULL, message.data, message.size, key->secret);
 	hash_to_hex(hash_of((struct bytes){ key->public_key, KEY_BYTES }), name);
-	if (!item || !cJSON_AddItemToArray(list, item))
+	if (!item || !json_append(list, item))
 		return false;
 	return cJSON_AddStringToObject(item, "key", name) &&
 	       add_base64(item, "signature", (struct bytes){ signature, sizeof(signature) });
@@ -65,7 +66,7 @@ static int put_envelope(struct buffer *out, enum meta_role role, struct bytes pa
 	for (uint32_t i = 0; good && i < key_count; i++)
 		good = add_signature(list, &keys[i], buffer_bytes(&message));
 	if (good)
-		text = cJSON_PrintUnformatted(json);
+		text = json_line(json);
 	if (text) {
 		buffer_put_text(out, text);
 		buffer_put_u8(out, '\n');
@@ -81,7 +82,7 @@ static int put_envelope(struct buffer *out, enum meta_role role, struct bytes pa
 static int sign_payload(struct buffer *out, enum meta_role role, cJSON *json, bool complete,
 			const struct signing_key *keys, uint32_t key_count)
 {
-	char *text = complete ? cJSON_PrintUnformatted(json) : NULL;
+	char *text = complete ? json_line(json) : NULL;
 	int rc = -ENOMEM;
 
 	if (text)

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "tuf/canonical.h"
 
 enum { ENTRY_BYTES_MAX = 16 << 10 };
@@ -109,11 +110,12 @@ static const char *text_in(const cJSON *object, const char *name)
 /* Takes the three members that matter; other tools add some, such as the key's id. */
 static int take_json(cJSON **out, struct bytes file)
 {
-	cJSON *json = cJSON_ParseWithLength((const char *)file.data, file.size);
+	cJSON *json;
+	const int parsed = json_parse(&json, file);
 	const cJSON *value = cJSON_GetObjectItemCaseSensitive(json, "keyval");
 	const char *type = text_in(json, "keytype"), *scheme = text_in(json, "scheme");
 	const char *public = text_in(value, "public"), *private = text_in(value, "private");
-	int rc = type && scheme && public ? 0 : -EBADMSG;
+	int rc = type && scheme && public ? 0 : parsed < 0 ? parsed : -EBADMSG;
 
 	if (private && *private)
 		rc = -EPERM;

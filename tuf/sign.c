@@ -8,6 +8,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/json_tree.h"
 #include "tuf/canonical.h"
 #include "tuf/key.h"
 
@@ -75,13 +76,9 @@ cJSON *tuf_next_content(const struct tuf_file *last, enum tuf_type type, uint32_
 
 	cJSON_ArrayForEach(item, members)
 	{
-		cJSON *copy;
-
 		if (cJSON_GetObjectItemCaseSensitive(content, item->string))
 			continue;
-		copy = cJSON_Duplicate(item, true);
-		if (!cJSON_AddItemToObject(content, item->string, copy)) {
-			cJSON_Delete(copy);
+		if (!json_add(content, item->string, cJSON_Duplicate(item, true))) {
 			cJSON_Delete(content);
 			return NULL;
 		}
@@ -233,10 +230,9 @@ int tuf_add_signature(cJSON *signatures, const cJSON *keys, const cJSON *role, s
 	} else if ((entry = cJSON_CreateObject()) && cJSON_AddStringToObject(entry, "keyid", id) &&
 		   cJSON_AddStringToObject(entry, "sig", hex)) {
 		remove_of(signatures, id);
-		if (cJSON_AddItemToArray(signatures, entry)) {
-			entry = NULL;
+		if (json_append(signatures, entry))
 			rc = 0;
-		}
+		entry = NULL;
 	}
 	cJSON_Delete(entry);
 	free(hex);

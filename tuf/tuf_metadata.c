@@ -9,6 +9,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "base/json_tree.h"
 #include "tuf/canonical.h"
 #include "tuf/key.h"
 
@@ -60,31 +61,10 @@ static bool are_texts(const cJSON *array)
 
 /* ---- JSON */
 
-static bool only_space_after(const char *at, const char *end)
-{
-	while (at < end && (*at == ' ' || *at == '\n' || *at == '\r' || *at == '\t'))
-		at++;
-	return at == end;
-}
-
 /* A text with a zero in it would be shorter to us than to those who signed it. */
 static bool has_zero(struct bytes bytes)
 {
 	return memchr(bytes.data, 0, bytes.size) || memmem(bytes.data, bytes.size, "\\u0000", 6);
-}
-
-static cJSON *parse_object(struct bytes bytes)
-{
-	const char *start = (const char *)bytes.data, *end = NULL;
-	cJSON *json;
-
-	if (bytes.size == 0 || has_zero(bytes))
-		return NULL;
-	json = cJSON_ParseWithLengthOpts(start, bytes.size, &end, 0);
-	if (json && cJSON_IsObject(json) && only_space_after(end, start + bytes.size))
-		return json;
-	cJSON_Delete(json);
-	return NULL;
 }
 
 /* "2030-06-30T12:00:00Z", and nothing else. */
@@ -246,9 +226,14 @@ static bool are_signatures(const cJSON *list)
 
 int tuf_file_parse(struct tuf_file *out, struct bytes bytes, enum tuf_type type, const char **why)
 {
-	*out = (struct tuf_file){ .json = parse_object(bytes) };
+	int rc;
+
+	*out = (struct tuf_file){ 0 };
+	rc = has_zero(bytes) ? -EBADMSG : json_parse_object(&out->json, bytes);
 	out->content = member(out->json, "signed");
-	if (!out->json)
+	if (rc == -ENOMEM)
+		*why = "no memory is left";
+	else if (rc < 0)
 		*why = "it is not JSON";
 	else if (!are_signatures(member(out->json, "signatures")))
 		*why = "its signatures are damaged, or one key is there twice";
@@ -257,7 +242,7 @@ int tuf_file_parse(struct tuf_file *out, struct bytes bytes, enum tuf_type type,
 	if (!*why)
 		return 0;
 	tuf_file_finish(out);
-	return -EBADMSG;
+	return rc < 0 ? rc : -EBADMSG;
 }
 
 void tuf_file_finish(struct tuf_file *file)

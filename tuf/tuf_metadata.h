@@ -26,7 +26,7 @@ struct tuf_file {
 };
 
 /* Parses a file of that type. Returns 0; -EBADMSG: it is not such a file, and *why is set to a
- * static text that says why not; -ENOMEM. *out is zeroed on failure. */
+ * static text that says why not, as after -ENOMEM. *out is zeroed on failure. */
 must_check int tuf_file_parse(struct tuf_file *out, struct bytes bytes, enum tuf_type type,
 			      const char **why);
 /* Frees it. Zeroed is fine. */

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "tuf/targets.h"
 #include "tuf/workflow.h"
 
@@ -162,7 +163,7 @@ static int check_signers(const struct tuf_file *root, const struct role_keys *si
 	cJSON_ArrayForEach(key, tuf_root_keys(root))
 	{
 		if (whole && is_one_of(key, signers))
-			whole = cJSON_AddItemToArray(ids, cJSON_CreateString(key->string));
+			whole = json_append(ids, cJSON_CreateString(key->string));
 	}
 	rc = whole ? tuf_file_verify(root, tuf_root_keys(root), role) : -ENOMEM;
 	cJSON_Delete(role);
@@ -342,7 +343,8 @@ static bool forget_withdrawn(struct tuf_follower *follower, const struct tuf_fil
 	const char *why;
 	const bool withdrawn =
 		tuf_file_parse(&file, buffer_bytes(&follower->kept[type]), type, &why) == 0 &&
-		tuf_file_verify(&file, tuf_root_keys(root), tuf_root_role(root, type)) < 0;
+		tuf_file_verify(&file, tuf_root_keys(root), tuf_root_role(root, type)) ==
+			-EKEYREJECTED;
 
 	tuf_file_finish(&file);
 	if (withdrawn) {

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/json_tree.h"
 
 static const char file_name[] = ".curator/accounts.json";
 
@@ -77,12 +78,14 @@ static int parse_account(struct accounts *accounts, const cJSON *row,
 
 int accounts_parse(struct accounts *out, struct bytes text, struct diagnostics *diagnostics)
 {
-	cJSON *root = cJSON_ParseWithLength((const char *)text.data, text.size);
+	cJSON *root;
+	int rc = json_parse(&root, text);
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "accounts"), *row;
-	int rc = 0;
 
 	*out = (struct accounts){ 0 };
-	if (!cJSON_IsArray(list))
+	if (rc == -ENOMEM)
+		rc = diagnostics_add(diagnostics, rc, file_name, 0, "no memory is left");
+	else if (!cJSON_IsArray(list))
 		rc = diagnostics_add(diagnostics, -EBADMSG, file_name, 0,
 				     "is not a list of accounts: take it from a backup, or remove "
 				     "it and make the accounts anew");

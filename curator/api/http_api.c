@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_tree.h"
+
 /* ---- the request */
 
 const char *api_parameter(const struct api_request *request, const char *name)
@@ -35,11 +37,14 @@ const char *api_query(const struct api_request *request, const char *name)
 int api_read_json(const struct api_request *request, struct api_response *response,
 		  struct cJSON **out)
 {
-	const char *text = (const char *)request->body.data;
+	const int rc = json_parse(out, buffer_bytes(&request->body));
 
-	*out = request->body.size > 0 ? cJSON_ParseWithLength(text, request->body.size) : NULL;
 	if (cJSON_IsObject(*out))
 		return 0;
+	if (rc == -ENOMEM) {
+		api_fail(response, 500, "no memory is left");
+		return rc;
+	}
 	cJSON_Delete(*out);
 	*out = NULL;
 	api_fail(response, 400, "the body must be an object of JSON");
@@ -75,7 +80,7 @@ bool api_tag_matches(const char *header, const char *tag)
 
 static void send_json(struct api_response *response, const cJSON *json)
 {
-	char *text = cJSON_PrintUnformatted(json);
+	char *text = json_line(json);
 
 	buffer_clear(&response->body);
 	response->type = "application/json";

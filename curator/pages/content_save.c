@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/json_tree.h"
+
 int content_check(const struct site *site, const struct info_text_instead *instead, uint32_t count,
 		  struct diagnostics *out)
 {
@@ -125,7 +127,7 @@ cJSON *content_problems(const struct diagnostics *problems, const char *file)
 		cJSON_AddNumberToObject(row, "line", one->line);
 		cJSON_AddStringToObject(row, "text", one->text + one->place_bytes);
 		cJSON_AddBoolToObject(row, "error", one->error < 0);
-		cJSON_AddItemToArray(list, row);
+		json_append(list, row);
 	}
 	return list;
 }

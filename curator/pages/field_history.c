@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/store/documents_versions.h"
 #include "curator/store/parts_file.h"
 
@@ -45,7 +46,7 @@ static void compare(const struct comparison *comparison, const char *field, cons
 	cJSON_AddStringToObject(row, "language", language);
 	cJSON_AddStringToObject(row, "from", from);
 	cJSON_AddStringToObject(row, "to", to);
-	cJSON_AddItemToArray(comparison->out, row);
+	json_append(comparison->out, row);
 }
 
 static void compare_part(const struct comparison *comparison)
@@ -71,9 +72,9 @@ static int read_version(cJSON **out, struct site *site, const struct history_ver
 	buffer_init(&text, PARTS_FILE_BYTES_MAX);
 	rc = documents_read_version(site->documents, PARTS_FILE, version->id, &text, diagnostics);
 	if (rc == 0)
-		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
+		rc = json_parse(out, buffer_bytes(&text));
 	buffer_finish(&text);
-	return rc;
+	return rc == -EBADMSG ? 0 : rc;
 }
 
 static int walk(cJSON *out, struct site *site, const char *id,

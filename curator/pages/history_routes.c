@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "curator/pages/field_history.h"
 #include "curator/pages/save_answer.h"
@@ -55,7 +56,7 @@ static void get_versions(void *user, const struct api_request *request,
 		json = cJSON_CreateObject();
 		list = cJSON_AddArrayToObject(json, "versions");
 		for (uint32_t n = 0; n < count; n++)
-			cJSON_AddItemToArray(list, version_json(&versions[n]));
+			json_append(list, version_json(&versions[n]));
 		api_send_json(response, json);
 	}
 	free(versions);

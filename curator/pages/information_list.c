@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "curator/store/parts_file.h"
 
@@ -14,7 +15,7 @@ static void copy(cJSON *to, const cJSON *from, const char *key)
 	const cJSON *item = cJSON_GetObjectItemCaseSensitive(from, key);
 
 	if (item)
-		cJSON_AddItemToObject(to, key, cJSON_Duplicate(item, true));
+		json_add(to, key, cJSON_Duplicate(item, true));
 }
 
 static void add_part(cJSON *rows, const cJSON *part)
@@ -38,7 +39,7 @@ static void add_part(cJSON *rows, const cJSON *part)
 	cJSON_AddObjectToObject(row, "pages");
 	cJSON_AddObjectToObject(row, "spoken");
 	cJSON_AddObjectToObject(row, "words");
-	cJSON_AddItemToArray(rows, row);
+	json_append(rows, row);
 }
 
 struct lister {
@@ -72,7 +73,7 @@ static cJSON *add_document_row(cJSON *documents, const char *id, size_t bytes)
 	row = cJSON_CreateObject();
 	cJSON_AddStringToObject(row, "id", name);
 	cJSON_AddObjectToObject(row, "pages");
-	cJSON_AddItemToArray(documents, row);
+	json_append(documents, row);
 	return row;
 }
 
@@ -108,7 +109,7 @@ static int add_document(void *user, const char *name, const char *tag)
 	if (strncmp(name, "pages/", 6) == 0)
 		add_page(lister, name, tag);
 	else if (strncmp(name, "pictures/", 9) == 0)
-		cJSON_AddItemToArray(lister->pictures, cJSON_CreateString(name));
+		json_append(lister->pictures, cJSON_CreateString(name));
 	return 0;
 }
 
@@ -121,15 +122,16 @@ static void add_tours(struct site *site, cJSON *rows)
 	const cJSON *tour;
 
 	buffer_init(&text, PARTS_FILE_BYTES_MAX);
-	if (documents_read(site->documents, "tours.json", &text, tag, NULL) == 0)
-		root = cJSON_ParseWithLength((const char *)text.data, text.size);
+	if (documents_read(site->documents, "tours.json", &text, tag, NULL) < 0 ||
+	    json_parse(&root, buffer_bytes(&text)) < 0)
+		root = NULL;
 	cJSON_ArrayForEach(tour, cJSON_GetObjectItemCaseSensitive(root, "tours"))
 	{
 		cJSON *row = cJSON_CreateObject();
 
 		copy(row, tour, "id");
 		copy(row, tour, "title");
-		cJSON_AddItemToArray(rows, row);
+		json_append(rows, row);
 	}
 	cJSON_Delete(root);
 	buffer_finish(&text);
@@ -150,7 +152,7 @@ static int fill(struct site *site, cJSON *root, struct diagnostics *diagnostics)
 		return rc;
 	cJSON_AddStringToObject(root, "name", site->content.name);
 	for (uint32_t n = 0; n < site->content.language_count; n++)
-		cJSON_AddItemToArray(languages, cJSON_CreateString(site->content.languages[n]));
+		json_append(languages, cJSON_CreateString(site->content.languages[n]));
 	cJSON_ArrayForEach(part, parts_file_list(&parts)) add_part(lister.parts, part);
 	copy(root, parts.root, "credits");
 	add_tours(site, cJSON_AddArrayToObject(root, "tours"));
@@ -158,7 +160,7 @@ static int fill(struct site *site, cJSON *root, struct diagnostics *diagnostics)
 	if (rc == 0)
 		rc = content_check(site, NULL, 0, &problems);
 	if (rc == 0)
-		cJSON_AddItemToObject(root, "problems", content_problems(&problems, ""));
+		json_add(root, "problems", content_problems(&problems, ""));
 	diagnostics_finish(&problems);
 	parts_file_finish(&parts);
 	return rc;
@@ -174,7 +176,7 @@ int information_list(struct site *site, struct buffer *out, struct diagnostics *
 	rc = fill(site, root, diagnostics);
 	documents_unlock(site->documents);
 	if (rc == 0) {
-		text = cJSON_PrintUnformatted(root);
+		text = json_line(root);
 		rc = text ? 0 : -ENOMEM;
 	}
 	if (rc == 0) {

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "curator/pages/save_answer.h"
 #include "curator/store/documents_versions.h"
@@ -185,7 +186,7 @@ static void answer_saved(struct page_save *save, const char *tag)
 
 	cJSON_AddBoolToObject(json, "merged", save->is_merged);
 	if (content_check(save->site, NULL, 0, &found) == 0)
-		cJSON_AddItemToObject(json, "problems", content_problems(&found, save->name));
+		json_add(json, "problems", content_problems(&found, save->name));
 	diagnostics_finish(&found);
 	api_send_json(save->response, json);
 }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
+
 static const char *const by_language[] = { "title", "caption", "reading" };
 static const char documents[] = "documents"; /* names, each on a line */
 static const char *const credits[] = { "creator", "contributor", "publisher", "date",    "source",
@@ -53,7 +55,7 @@ static cJSON *make_value(const char *key, const char *text)
 
 		item = line ? cJSON_CreateString(line) : NULL;
 		free(line);
-		if (!item || (bytes > 0 && !cJSON_AddItemToArray(list, item))) {
+		if (!item || (bytes > 0 && !json_append(list, item))) {
 			cJSON_Delete(list);
 			return NULL;
 		}
@@ -205,13 +207,13 @@ int part_change_place(const struct parts_file *parts, const char *id, const char
 			cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(next, "id"));
 
 		if (part && *before && its && strcmp(its, before) == 0) {
-			cJSON_AddItemToArray(ordered, part);
+			json_append(ordered, part);
 			part = NULL;
 		}
-		cJSON_AddItemToArray(ordered, next);
+		json_append(ordered, next);
 	}
 	if (part)
-		cJSON_AddItemToArray(ordered, part);
+		json_append(ordered, part);
 	return json_set(parts->root, "parts", ordered) ? 0 : -ENOMEM;
 }
 

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 
 int save_base_read(const struct api_request *request, struct api_response *response,
@@ -36,7 +37,7 @@ void save_answer_fail(struct api_response *response, int rc, const struct diagno
 	status = response->status;
 	json = cJSON_CreateObject();
 	cJSON_AddStringToObject(json, "message", diagnostics_cause(problems, rc));
-	cJSON_AddItemToObject(json, "problems", content_problems(problems, ""));
+	json_add(json, "problems", content_problems(problems, ""));
 	response->status = status;
 	api_send_json(response, json);
 }

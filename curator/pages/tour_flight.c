@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "geometry/tour_path.h"
 #include "geometry/vec.h"
@@ -47,8 +48,7 @@ static int build(struct site *site, struct bytes tours, struct info_built *out,
 static void add_numbers(cJSON *list, const float numbers[3])
 {
 	for (int i = 0; i < 3; i++)
-		cJSON_AddItemToArray(list,
-				     cJSON_CreateNumber(round((double)numbers[i] * 1e3) / 1e3));
+		json_append(list, cJSON_CreateNumber(round((double)numbers[i] * 1e3) / 1e3));
 }
 
 static void add_stops(cJSON *list, const struct info_tour *tour)
@@ -58,7 +58,7 @@ static void add_stops(cJSON *list, const struct info_tour *tour)
 
 		add_numbers(cJSON_AddArrayToObject(stop, "eye"), tour->stops[n].eye_m);
 		add_numbers(cJSON_AddArrayToObject(stop, "target"), tour->stops[n].target_m);
-		cJSON_AddItemToArray(list, stop);
+		json_append(list, stop);
 	}
 }
 
@@ -89,7 +89,7 @@ static void add_path(cJSON *json, const struct site *site, const struct info_tou
 		tour_path_pose(&path, ms < path.duration_ms ? ms : path.duration_ms, &pose);
 		add_numbers(poses, pose.eye_m);
 		add_numbers(poses, pose.target_m);
-		cJSON_AddItemToArray(at, cJSON_CreateNumber(pose.stop));
+		json_append(at, cJSON_CreateNumber(pose.stop));
 	}
 	cJSON_AddNumberToObject(json, "step_ms", (double)step_ms);
 	cJSON_AddNumberToObject(json, "duration_ms", (double)path.duration_ms);
@@ -136,7 +136,7 @@ int tour_flight(struct cJSON **out, struct site *site, const char *id, struct by
 	else if (rc == -EINVAL && found.error_count > 0)
 		rc = 0; /* without a path: the faults are the answer */
 	if (rc == 0)
-		cJSON_AddItemToObject(json, "problems", content_problems(&found, ""));
+		json_add(json, "problems", content_problems(&found, ""));
 	else
 		diagnostics_add(diagnostics, rc, NULL, 0, "%s",
 				rc == -ENOENT ? "there is no such tour"

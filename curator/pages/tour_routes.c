@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "curator/pages/save_answer.h"
 #include "curator/pages/tour_flight.h"
@@ -14,6 +15,22 @@
 #define TOURS_FILE "tours.json"
 
 enum { TOURS_BYTES_MAX = 1 << 20 };
+
+static const char no_memory[] = "cannot be read: no memory is left";
+
+static int parse(cJSON **out, struct bytes text, struct diagnostics *diagnostics)
+{
+	int rc = json_parse(out, text);
+
+	if (rc == -ENOMEM)
+		return diagnostics_add(diagnostics, rc, TOURS_FILE, 0, "%s", no_memory);
+	if (cJSON_IsObject(*out))
+		return 0;
+	cJSON_Delete(*out);
+	*out = NULL;
+	return diagnostics_add(diagnostics, -EINVAL, TOURS_FILE, 0,
+			       "is not valid: 'gopura-content build' names the line");
+}
 
 /* Reads the file as a tree; an empty one if there is none, with "" as tag. *out is owned by the
  * caller; NULL on failure, with a diagnostic. */
@@ -26,19 +43,13 @@ static int read_tours(struct site *site, cJSON **out, char tag[DOCUMENT_TAG_BYTE
 	*out = NULL;
 	buffer_init(&text, TOURS_BYTES_MAX);
 	rc = documents_read(site->documents, TOURS_FILE, &text, tag, diagnostics);
-	if (rc == -ENOENT) {
+	if (rc == 0)
+		rc = parse(out, buffer_bytes(&text), diagnostics);
+	else if (rc == -ENOENT && (*out = cJSON_CreateObject()))
 		rc = 0;
-		*out = cJSON_CreateObject();
-	} else if (rc == 0) {
-		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
-	}
+	else if (rc == -ENOENT)
+		rc = diagnostics_add(diagnostics, -ENOMEM, TOURS_FILE, 0, "%s", no_memory);
 	buffer_finish(&text);
-	if (rc == 0 && !cJSON_IsObject(*out)) {
-		cJSON_Delete(*out);
-		*out = NULL;
-		rc = diagnostics_add(diagnostics, -EINVAL, TOURS_FILE, 0,
-				     "is not valid: 'gopura-content build' names the line");
-	}
 	return rc;
 }
 
@@ -47,9 +58,8 @@ static cJSON *tours_json(const cJSON *root, const char *tag)
 	cJSON *json = cJSON_CreateObject();
 	const cJSON *tours = cJSON_GetObjectItemCaseSensitive(root, "tours");
 
-	cJSON_AddItemToObject(json, "tours",
-			      cJSON_IsArray(tours) ? cJSON_Duplicate(tours, true)
-						   : cJSON_CreateArray());
+	json_add(json, "tours",
+		 cJSON_IsArray(tours) ? cJSON_Duplicate(tours, true) : cJSON_CreateArray());
 	cJSON_AddStringToObject(json, "tag", tag);
 	return json;
 }
@@ -112,7 +122,7 @@ static int meet_others(struct tours_save *save, const cJSON *root, const char *n
 	struct diagnostics diagnostics = { 0 };
 	char tag[DOCUMENT_TAG_BYTES];
 	bool is_clean = false;
-	cJSON *both;
+	cJSON *both = NULL;
 	int rc;
 
 	if (strcmp(save->base, now) == 0)
@@ -121,10 +131,8 @@ static int meet_others(struct tours_save *save, const cJSON *root, const char *n
 				    buffer_bytes(&save->text), &save->merged, &is_clean, tag,
 				    &diagnostics)
 		  : -ENOENT;
-	both = rc == 0 && is_clean
-		       ? cJSON_ParseWithLength((const char *)save->merged.data, save->merged.size)
-		       : NULL;
-	save->is_merged = both != NULL;
+	save->is_merged =
+		rc == 0 && is_clean && json_parse(&both, buffer_bytes(&save->merged)) == 0;
 	cJSON_Delete(both);
 	if (!save->is_merged) {
 		answer_theirs(save, root, now);
@@ -137,9 +145,11 @@ static int meet_others(struct tours_save *save, const cJSON *root, const char *n
 static void answer_saved(const struct tours_save *save, const char *tag)
 {
 	const struct buffer *text = save->is_merged ? &save->merged : &save->text;
-	cJSON *root = cJSON_ParseWithLength((const char *)text->data, text->size);
-	cJSON *json = tours_json(root, tag);
+	cJSON *root, *json;
 
+	if (json_parse(&root, buffer_bytes(text)) < 0)
+		root = NULL; /* only for lack of memory; then api_send_json says so */
+	json = tours_json(root, tag);
 	cJSON_AddBoolToObject(json, "merged", save->is_merged);
 	api_send_json(save->response, json);
 	cJSON_Delete(root);

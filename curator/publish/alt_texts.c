@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
+
 enum { PAGE_FILE_BYTES_MAX = 1 << 20 };
 
 static bool is_described(xmlNode *image)
@@ -28,7 +30,7 @@ static void add(cJSON *list, const char *file, xmlNode *image)
 	cJSON_AddStringToObject(row, "file", file);
 	cJSON_AddNumberToObject(row, "line", (double)xmlGetLineNo(image));
 	cJSON_AddStringToObject(row, "picture", source ? (const char *)source : "");
-	cJSON_AddItemToArray(list, row);
+	json_append(list, row);
 	xmlFree(source);
 }
 

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/publish/alt_texts.h"
 #include "curator/publish/info_difference.h"
 #include "pipeline/build.h"
@@ -20,8 +21,7 @@ static void add_found(cJSON *json, const struct diagnostics *found)
 	for (uint32_t n = 0; n < found->count && n < SENTENCES_MAX; n++) {
 		const struct diagnostic *one = diagnostics_get(found, n);
 
-		cJSON_AddItemToArray(one->error < 0 ? errors : warnings,
-				     cJSON_CreateString(one->text));
+		json_append(one->error < 0 ? errors : warnings, cJSON_CreateString(one->text));
 	}
 }
 

@@ -7,6 +7,8 @@
 #include <sqlite3.h>
 #include <stdio.h>
 
+#include "base/json_tree.h"
+
 enum { QUERY_BYTES_MAX = 8192 };
 
 /* In each, % stands for the schema. */
@@ -102,7 +104,7 @@ static int add_rows(cJSON *json, const char *name, sqlite3 *db, const char *quer
 	if (code != SQLITE_OK || !list)
 		return -EBADMSG;
 	while ((code = sqlite3_step(statement)) == SQLITE_ROW)
-		cJSON_AddItemToArray(list, row_of(statement));
+		json_append(list, row_of(statement));
 	sqlite3_finalize(statement);
 	return code == SQLITE_DONE ? 0 : -EBADMSG;
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/json_tree.h"
 #include "base/utf8.h"
 #include "curator/accounts/accounts.h"
 
@@ -67,11 +68,6 @@ static bool get_time(const cJSON *json, const char *key, int64_t *out_s)
 	return true;
 }
 
-static cJSON *parse(struct bytes text)
-{
-	return text.size > 0 ? cJSON_ParseWithLength((const char *)text.data, text.size) : NULL;
-}
-
 /* ---- a request */
 
 static bool is_name(const char *name)
@@ -110,7 +106,8 @@ bool publish_comment_is_valid(const char *comment)
 
 int publish_request_parse(struct publish_request *out, struct bytes text)
 {
-	cJSON *json = parse(text);
+	cJSON *json;
+	int rc = json_parse(&json, text);
 	bool good;
 
 	*out = (struct publish_request){ 0 };
@@ -118,7 +115,7 @@ int publish_request_parse(struct publish_request *out, struct bytes text)
 	cJSON_Delete(json);
 	if (!good)
 		*out = (struct publish_request){ 0 };
-	return good ? 0 : -EBADMSG;
+	return good || rc < 0 ? rc : -EBADMSG;
 }
 
 /* ---- the state */
@@ -139,7 +136,8 @@ static bool get_step(const cJSON *json, enum publish_step *out)
 
 int publish_state_parse(struct publish_state *out, struct bytes text)
 {
-	cJSON *json = parse(text);
+	cJSON *json;
+	int rc = json_parse(&json, text);
 	bool good;
 
 	*out = (struct publish_state){ 0 };
@@ -151,7 +149,7 @@ int publish_state_parse(struct publish_state *out, struct bytes text)
 	cJSON_Delete(json);
 	if (!good)
 		*out = (struct publish_state){ 0 };
-	return good ? 0 : -EBADMSG;
+	return good || rc < 0 ? rc : -EBADMSG;
 }
 
 static cJSON *print_state(const struct publish_state *state)
@@ -190,11 +188,13 @@ static int add_release(struct publish_releases *releases, const cJSON *row)
 
 int publish_releases_parse(struct publish_releases *out, struct bytes text)
 {
-	cJSON *json = parse(text);
+	cJSON *json;
+	int rc = json_parse(&json, text);
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(json, "releases"), *row;
-	int rc = cJSON_IsArray(list) ? 0 : -EBADMSG;
 
 	*out = (struct publish_releases){ 0 };
+	if (rc == 0 && !cJSON_IsArray(list))
+		rc = -EBADMSG;
 	cJSON_ArrayForEach(row, list)
 	{
 		if (rc == 0)
@@ -225,7 +225,7 @@ static cJSON *print_releases(const struct publish_releases *releases)
 		cJSON_AddStringToObject(row, "comment", one->comment);
 		cJSON_AddStringToObject(row, "by", one->by);
 		cJSON_AddNumberToObject(row, "at", (double)one->at_s);
-		cJSON_AddItemToArray(list, row);
+		json_append(list, row);
 	}
 	return json;
 }
@@ -303,7 +303,7 @@ int publish_releases_read(struct publish_releases *out, const char *folder)
 /* json is taken. */
 static int write_file(cJSON *json, const char *folder, const char *name)
 {
-	char path[PATH_MAX], *text = cJSON_Print(json);
+	char path[PATH_MAX], *text = json_indented(json);
 	int rc = text ? publish_file_path(path, folder, name) : -ENOMEM;
 
 	if (rc == 0)

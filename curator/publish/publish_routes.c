@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/json_tree.h"
 #include "base/log.h"
 #include "curator/publish/changes.h"
 #include "curator/publish/publish_files.h"
@@ -127,7 +128,7 @@ static void add_releases(cJSON *json, const struct publish_releases *releases)
 		cJSON_AddNumberToObject(row, "at", (double)one->at_s);
 		cJSON_AddBoolToObject(row, "current",
 				      strcmp(one->root, releases->list[0].root) == 0);
-		cJSON_AddItemToArray(list, row);
+		json_append(list, row);
 	}
 }
 

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/store/parts_file.h"
 
 enum { FACES_BYTES_MAX = DOCUMENT_BYTES_MAX };
@@ -56,7 +57,7 @@ static void add_row(const struct site *site, cJSON *rows, const cJSON *part)
 	cJSON_AddStringToObject(row, "id", id->valuestring);
 	cJSON_AddStringToObject(row, "title", title_of(site, part));
 	cJSON_AddBoolToObject(row, "faces", faces_file(part) != NULL);
-	cJSON_AddItemToArray(rows, row);
+	json_append(rows, row);
 }
 
 int part_store_list(struct site *site, struct buffer *out, struct diagnostics *diagnostics)
@@ -69,7 +70,7 @@ int part_store_list(struct site *site, struct buffer *out, struct diagnostics *d
 
 	if (rc == 0) {
 		cJSON_ArrayForEach(part, parts_file_list(&parts)) add_row(site, rows, part);
-		text = cJSON_PrintUnformatted(rows);
+		text = json_line(rows);
 		rc = text ? 0 : fail(diagnostics, -ENOMEM, PARTS_FILE);
 	}
 	if (rc == 0)
@@ -149,12 +150,11 @@ static cJSON *get_part(const struct parts_file *parts, const char *id)
 	if (part)
 		return part;
 	part = cJSON_CreateObject();
-	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddFalseToObject(part, "page") ||
-	    !cJSON_AddItemToArray(parts_file_list(parts), part)) {
+	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddFalseToObject(part, "page")) {
 		cJSON_Delete(part);
 		return NULL;
 	}
-	return part;
+	return json_append(parts_file_list(parts), part) ? part : NULL;
 }
 
 static bool set_region(const struct site *site, cJSON *part, uint32_t scan, const char *file)

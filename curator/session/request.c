@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "base/utf8.h"
 #include "curator/session/painter.h"
 
@@ -287,7 +288,9 @@ int request_parse(struct request *out, const char *text, size_t bytes,
 	*out = (struct request){ 0 };
 	snprintf(problem, REQUEST_PROBLEM_BYTES, "is not an object of JSON");
 	if (bytes <= REQUEST_BYTES_MAX)
-		root = cJSON_ParseWithLength(text, bytes);
+		rc = json_parse(&root, (struct bytes){ (const uint8_t *)text, bytes });
+	if (rc == -EBADMSG)
+		rc = -EINVAL;
 	if (cJSON_IsObject(root))
 		rc = read_kind(&(struct parse){ root, problem }, out);
 	cJSON_Delete(root);

@@ -10,6 +10,7 @@
 #include <time.h>
 
 #include "base/clock.h"
+#include "base/json_tree.h"
 #include "base/log.h"
 #include "curator/region/region_smooth.h"
 #include "curator/session/painter.h"
@@ -54,14 +55,14 @@ struct session {
 
 /* ---- to the browser */
 
-/* text is taken; NULL is fine. */
+/* text is taken. NULL: there was no memory for it, and the browser would wait for it. */
 static void send_text(struct session *session, char *text)
 {
 	pthread_mutex_lock(&session->lock);
-	if (session->text_count == TEXTS_MAX) {
+	if (!text || session->text_count == TEXTS_MAX) {
 		session->lost = true;
 		free(text);
-	} else if (text) {
+	} else {
 		session->texts[(session->text_first + session->text_count++) % TEXTS_MAX] = text;
 	}
 	pthread_mutex_unlock(&session->lock);
@@ -71,7 +72,7 @@ static void send_text(struct session *session, char *text)
 /* json is taken. */
 static void send_json(struct session *session, cJSON *json)
 {
-	send_text(session, cJSON_PrintUnformatted(json));
+	send_text(session, json_line(json));
 	cJSON_Delete(json);
 }
 
@@ -105,14 +106,14 @@ static void send_region(struct session *session)
 
 static void add_point(cJSON *json, const char *key, const float point[3])
 {
-	cJSON_AddItemToObject(json, key, cJSON_CreateFloatArray(point, 3));
+	json_add(json, key, cJSON_CreateFloatArray(point, 3));
 }
 
 static void send_parts(struct session *session, const char *saved)
 {
 	struct diagnostics diagnostics = { 0 };
 	struct buffer parts;
-	cJSON *json;
+	cJSON *json, *rows;
 	int rc;
 
 	buffer_init(&parts, TEXT_BYTES_MAX);
@@ -122,9 +123,10 @@ static void send_parts(struct session *session, const char *saved)
 	if (rc < 0) {
 		send_error(session, diagnostics_cause(&diagnostics, rc));
 	} else {
+		if (json_parse(&rows, buffer_bytes(&parts)) < 0)
+			rows = NULL; /* only for lack of memory, which loses the session */
 		json = message_of("parts");
-		cJSON_AddItemToObject(json, "parts",
-				      cJSON_ParseWithLength((const char *)parts.data, parts.size));
+		json_add(json, "parts", rows);
 		if (saved)
 			cJSON_AddStringToObject(json, "saved", saved);
 		send_json(session, json);
@@ -150,7 +152,7 @@ static void send_hello(struct session *session)
 	}
 	languages = cJSON_AddArrayToObject(json, "languages");
 	for (uint32_t n = 0; n < content->language_count; n++)
-		cJSON_AddItemToArray(languages, cJSON_CreateString(content->languages[n]));
+		json_append(languages, cJSON_CreateString(content->languages[n]));
 	send_json(session, json);
 	send_parts(session, NULL);
 	send_region(session);

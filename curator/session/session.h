@@ -31,7 +31,8 @@ void session_destroy(struct session *session);
 void session_receive(struct session *session, const char *text, size_t bytes);
 /* Appends the next message for the browser to *out. Returns false if there is none. */
 bool session_next(struct session *session, struct buffer *out, bool *binary);
-/* Whether the browser takes its messages so slowly, or not at all, that it must be let go. */
+/* Whether the browser must be let go, because it takes its messages slowly or not at all, or
+ * because there was no memory for one that it waits for. */
 bool session_is_lost(struct session *session);
 
 #endif

@@ -5,6 +5,10 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/json_tree.h"
+
+static const char no_memory[] = "cannot be read: no memory is left";
+
 static int judge(const cJSON *root, struct diagnostics *diagnostics)
 {
 	const cJSON *list = cJSON_GetObjectItemCaseSensitive(root, "parts");
@@ -18,6 +22,13 @@ static int judge(const cJSON *root, struct diagnostics *diagnostics)
 	return 0;
 }
 
+static int parse(struct parts_file *out, struct bytes text, struct diagnostics *diagnostics)
+{
+	if (json_parse(&out->root, text) == -ENOMEM)
+		return diagnostics_add(diagnostics, -ENOMEM, PARTS_FILE, 0, "%s", no_memory);
+	return judge(out->root, diagnostics);
+}
+
 int parts_file_read(struct parts_file *out, struct documents *documents,
 		    struct diagnostics *diagnostics)
 {
@@ -28,12 +39,12 @@ int parts_file_read(struct parts_file *out, struct documents *documents,
 	buffer_init(&text, PARTS_FILE_BYTES_MAX);
 	rc = documents_read(documents, PARTS_FILE, &text, out->tag, diagnostics);
 	if (rc == 0)
-		out->root = cJSON_ParseWithLength((const char *)text.data, text.size);
+		rc = parse(out, buffer_bytes(&text), diagnostics);
+	else if (rc == -ENOENT && (out->root = cJSON_CreateObject()))
+		rc = 0;
 	else if (rc == -ENOENT)
-		out->root = cJSON_CreateObject();
+		rc = diagnostics_add(diagnostics, -ENOMEM, PARTS_FILE, 0, "%s", no_memory);
 	buffer_finish(&text);
-	if (rc == 0 || rc == -ENOENT)
-		rc = judge(out->root, diagnostics);
 	if (rc < 0)
 		parts_file_finish(out);
 	return rc;
@@ -70,7 +81,7 @@ cJSON *parts_file_find(const struct parts_file *parts, const char *id)
 
 int json_print(const cJSON *json, struct buffer *out)
 {
-	char *text = cJSON_Print(json);
+	char *text = json_indented(json);
 
 	if (!text)
 		return -ENOMEM;
@@ -85,7 +96,11 @@ bool json_set(cJSON *object, const char *key, cJSON *item)
 {
 	if (!item)
 		return false;
-	if (cJSON_GetObjectItemCaseSensitive(object, key))
-		return cJSON_ReplaceItemInObjectCaseSensitive(object, key, item);
-	return cJSON_AddItemToObject(object, key, item);
+	if (cJSON_GetObjectItemCaseSensitive(object, key)) {
+		if (cJSON_ReplaceItemInObjectCaseSensitive(object, key, item))
+			return true;
+		cJSON_Delete(item);
+		return false;
+	}
+	return json_add(object, key, item);
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "pipeline/content/annotations_iiif_export.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/draft.h"
@@ -38,18 +39,14 @@ struct exporter {
 
 static void add(struct exporter *e, cJSON *object, const char *key, cJSON *value)
 {
-	if (!value || !cJSON_AddItemToObject(object, key, value)) {
-		cJSON_Delete(value);
+	if (!json_add(object, key, value))
 		e->failed = true;
-	}
 }
 
 static void append(struct exporter *e, cJSON *array, cJSON *value)
 {
-	if (!value || !cJSON_AddItemToArray(array, value)) {
-		cJSON_Delete(value);
+	if (!json_append(array, value))
 		e->failed = true;
-	}
 }
 
 static void add_text(struct exporter *e, cJSON *object, const char *key, const char *text)
@@ -337,7 +334,7 @@ static int write_json(struct annotations *out, struct draft *draft, const cJSON 
 					   options->manifest_model);
 	else
 		made = make_collection(&exporter, json, tours);
-	text = made ? cJSON_Print(made) : NULL;
+	text = made ? json_indented(made) : NULL;
 	if (rc == 0 && !text)
 		rc = -ENOMEM;
 
@@ -364,9 +361,9 @@ static int read_json(cJSON **out, struct draft *draft, const char *name)
 	if (draft_path(draft, path, sizeof(path), name))
 		rc = buffer_read_file(&text, path);
 	if (rc == 0)
-		*out = cJSON_ParseWithLength((const char *)text.data, text.size);
+		rc = json_parse(out, buffer_bytes(&text));
 	buffer_finish(&text);
-	return rc;
+	return rc == -EBADMSG ? 0 : rc;
 }
 
 int annotations_export(struct annotations *out, const struct annotations_export_options *options)

@@ -9,6 +9,7 @@
 
 #include <glib.h>
 
+#include "base/json_tree.h"
 #include "pipeline/content/content.h"
 #include "pipeline/content/info_pages.h"
 
@@ -22,13 +23,8 @@ struct maker {
 
 static void add(struct maker *m, cJSON *object, const char *key, cJSON *value)
 {
-	bool is_added = value && (key ? cJSON_AddItemToObject(object, key, value)
-				      : cJSON_AddItemToArray(object, value));
-
-	if (!is_added) {
-		cJSON_Delete(value);
+	if (!(key ? json_add(object, key, value) : json_append(object, value)))
 		m->failed = true;
-	}
 }
 
 static void add_text(struct maker *m, cJSON *object, const char *key, const char *text)

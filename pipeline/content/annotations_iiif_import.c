@@ -11,6 +11,7 @@
 #include <glib.h>
 #include <libxml/HTMLparser.h>
 
+#include "base/json_tree.h"
 #include "geometry/region.h"
 #include "pipeline/import/json.h"
 #include "pipeline/import/manifest.h"
@@ -56,18 +57,14 @@ static const char *comment_id(const struct manifest_item *item)
 
 static void add(struct converter *c, cJSON *object, const char *key, cJSON *value)
 {
-	if (!value || !cJSON_AddItemToObject(object, key, value)) {
-		cJSON_Delete(value);
+	if (!json_add(object, key, value))
 		c->failed = true;
-	}
 }
 
 static void append(struct converter *c, cJSON *array, cJSON *value)
 {
-	if (!value || !cJSON_AddItemToArray(array, value)) {
-		cJSON_Delete(value);
+	if (!json_append(array, value))
 		c->failed = true;
-	}
 }
 
 /* ---- plain text of HTML */

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/json_tree.h"
 #include "pipeline/content/annotations_iiif_import.h"
 #include "pipeline/content/annotations_private.h"
 #include "pipeline/content/annotations_write.h"
@@ -30,10 +31,8 @@ static const char *item_id(const struct importer *im)
 
 static void add(struct importer *im, cJSON *object, const char *key, cJSON *value)
 {
-	if (!value || !cJSON_AddItemToObject(object, key, value)) {
-		cJSON_Delete(value);
+	if (!json_add(object, key, value))
 		im->failed = true;
-	}
 }
 
 /* Returns the object with that key; creates it if missing. NULL: no memory. */
@@ -251,7 +250,7 @@ static void name_document(struct importer *im, const char *name)
 	for (const cJSON *one = list ? list->child : NULL; one; one = one->next)
 		if (strcmp(one->valuestring, name) == 0)
 			return;
-	if (list && !cJSON_AddItemToArray(list, cJSON_CreateString(name)))
+	if (list && !json_append(list, cJSON_CreateString(name)))
 		im->failed = true;
 }
 
@@ -476,8 +475,7 @@ static bool read_item(struct importer *im, const cJSON *item, unsigned line)
 		return false;
 	}
 	im->part = cJSON_CreateObject();
-	if (!im->part || !cJSON_AddItemToArray(im->parts, im->part)) {
-		cJSON_Delete(im->part);
+	if (!json_append(im->parts, im->part)) {
 		im->failed = true;
 		return false;
 	}

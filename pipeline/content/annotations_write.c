@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/array.h"
+#include "base/json_tree.h"
 #include "base/safe_open.h"
 
 static int note_written(struct importer *im, const char *path)
@@ -130,8 +131,8 @@ static int write_tours(struct importer *im)
 	char *text = NULL;
 	int rc = -ENOMEM;
 
-	if (file && cJSON_AddItemToObject(file, "tours", cJSON_Duplicate(im->tours, true)))
-		text = cJSON_Print(file);
+	if (file && json_add(file, "tours", cJSON_Duplicate(im->tours, true)))
+		text = json_indented(file);
 	if (text)
 		rc = write_file(im, "tours.json",
 				(struct bytes){ (const uint8_t *)text, strlen(text) });
@@ -142,7 +143,7 @@ static int write_tours(struct importer *im)
 
 static int write_all(struct importer *im)
 {
-	char *text = cJSON_Print(im->parts_file);
+	char *text = json_indented(im->parts_file);
 	int rc = text ? make_folder(im, "") : -ENOMEM;
 
 	if (rc == 0)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "pipeline/import/json.h"
 
 enum { GLB_HEAD_BYTES = 20, NAME_BYTES = 64, FLOAT = 5126 };
@@ -161,11 +162,12 @@ static bool has_integers(const cJSON *json, const bool *floats, int count)
 int gltf_check_coordinates(struct bytes file, const char *path, struct diagnostics *diagnostics)
 {
 	const struct bytes text = json_of(file);
-	cJSON *json = cJSON_ParseWithLength((const char *)text.data, text.size);
+	cJSON *json;
+	const int parsed = json_parse(&json, text);
 	const cJSON *accessors = json_member(json, "accessors");
 	const int count = cJSON_IsArray(accessors) ? cJSON_GetArraySize(accessors) : 0;
 	bool *floats = list_floats(accessors, count);
-	int rc = floats ? 0 : -ENOMEM;
+	int rc = floats && parsed != -ENOMEM ? 0 : -ENOMEM;
 
 	if (rc == 0 && has_integers(json, floats, count))
 		rc = diagnostics_add(diagnostics, -ENOTSUP, path, 0,

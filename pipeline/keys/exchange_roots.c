@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "base/log.h"
 #include "pipeline/keys/keys_tuf.h"
 #include "pipeline/keys/signing.h"
@@ -255,7 +256,7 @@ static bool replace_id(cJSON *content, const char *old, const struct signing_key
 								cJSON_CreateString(signer.id));
 	}
 	entry = done ? tuf_signer_key(&signer) : NULL;
-	done = entry && cJSON_AddItemToObject(keys, signer.id, entry);
+	done = json_add(keys, signer.id, entry);
 	tuf_signer_finish(&signer);
 	return done;
 }
@@ -334,7 +335,8 @@ static int make_tuf(struct exchange_root *out, const struct exchange *exchange,
 	cJSON *content = tuf_next_content(last, TUF_ROOT, last->version + 1, exchange->expires_s);
 	const char *why = NULL;
 	bool changed = false;
-	int rc = content ? replace_tuf(content, exchange, last, &changed) : -ENOMEM;
+	int rc = content ? replace_tuf(content, exchange, last, &changed)
+			 : complain(exchange, tuf_form, last->version, -ENOMEM, NULL);
 
 	if (rc == 0 && changed)
 		rc = check_root_key(exchange);

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/json_tree.h"
 #include "base/log.h"
 #include "tuf/sign.h"
 
@@ -19,7 +20,7 @@ static bool add_key(cJSON *keys, const struct tuf_signer *signer)
 {
 	cJSON *key = tuf_signer_key(signer);
 
-	return key && cJSON_AddItemToObject(keys, signer->id, key);
+	return json_add(keys, signer->id, key);
 }
 
 static bool add_role(cJSON *roles, enum tuf_type type, const struct tuf_signer *signer)
@@ -27,7 +28,7 @@ static bool add_role(cJSON *roles, enum tuf_type type, const struct tuf_signer *
 	cJSON *role = cJSON_AddObjectToObject(roles, tuf_type_names[type]);
 	cJSON *id = cJSON_CreateString(signer->id);
 
-	return cJSON_AddItemToArray(cJSON_AddArrayToObject(role, "keyids"), id) &&
+	return json_append(cJSON_AddArrayToObject(role, "keyids"), id) &&
 	       cJSON_AddNumberToObject(role, "threshold", 1);
 }
 
@@ -42,11 +43,8 @@ static bool share_snapshot(cJSON *content, const struct tuf_signer *snapshot)
 
 	cJSON_DeleteItemFromObjectCaseSensitive(roles, tuf_type_names[TUF_SNAPSHOT]);
 	role = cJSON_AddObjectToObject(roles, tuf_type_names[TUF_SNAPSHOT]);
-	if (!cJSON_AddItemToObject(role, "keyids", keyids)) {
-		cJSON_Delete(keyids);
-		return false;
-	}
-	return cJSON_AddItemToArray(keyids, cJSON_CreateString(snapshot->id)) &&
+	return json_add(role, "keyids", keyids) &&
+	       json_append(keyids, cJSON_CreateString(snapshot->id)) &&
 	       cJSON_AddNumberToObject(role, "threshold", 1) &&
 	       add_key(cJSON_GetObjectItemCaseSensitive(content, "keys"), snapshot);
 }

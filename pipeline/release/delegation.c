@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/json_tree.h"
 #include "base/log.h"
 #include "pipeline/release/publish.h"
 #include "pipeline/release/release_tuf.h"
@@ -212,24 +213,19 @@ static cJSON *member_or(cJSON *object, const char *name, cJSON *(*make)(void))
 	if (item)
 		return item;
 	item = make();
-	if (cJSON_AddItemToObject(object, name, item))
-		return item;
-	cJSON_Delete(item);
-	return NULL;
+	return json_add(object, name, item) ? item : NULL;
 }
 
 static cJSON *add_role(cJSON *roles, const char *name)
 {
 	cJSON *role = cJSON_CreateObject();
 	char pattern[PATH_MAX];
-	cJSON *path;
 
 	snprintf(pattern, sizeof(pattern), "%s/*", name);
-	path = cJSON_CreateString(pattern);
 	if (cJSON_AddStringToObject(role, "name", name) &&
-	    cJSON_AddItemToArray(cJSON_AddArrayToObject(role, "paths"), path) &&
-	    cJSON_AddTrueToObject(role, "terminating") && cJSON_AddItemToArray(roles, role))
-		return role;
+	    json_append(cJSON_AddArrayToObject(role, "paths"), cJSON_CreateString(pattern)) &&
+	    cJSON_AddTrueToObject(role, "terminating"))
+		return json_append(roles, role) ? role : NULL;
 	cJSON_Delete(role);
 	return NULL;
 }
@@ -245,8 +241,8 @@ static bool set_keys(cJSON *role, cJSON *keys, const struct given *given)
 		const struct tuf_public_key *key = &given->keys[i];
 
 		cJSON_DeleteItemFromObjectCaseSensitive(keys, key->id);
-		if (!cJSON_AddItemToArray(ids, cJSON_CreateString(key->id)) ||
-		    !cJSON_AddItemToObject(keys, key->id, cJSON_Duplicate(key->entry, true)))
+		if (!json_append(ids, cJSON_CreateString(key->id)) ||
+		    !json_add(keys, key->id, cJSON_Duplicate(key->entry, true)))
 			return false;
 	}
 	return cJSON_AddNumberToObject(role, "threshold", given->options->threshold);

@@ -1,6 +1,7 @@
 /* Prints summaries of single files: recognises the form by its first bytes, decodes it and prints
  * its main figures. */
 #include "pipeline/release/inspect.h"
+#include "base/json_tree.h"
 #include "geometry/substance.h"
 
 #include <cjson/cJSON.h>
@@ -348,7 +349,8 @@ static int print_info(FILE *to, struct bytes bytes)
 /* Prints what a signed file says. Signatures are not checked here; verify does that. */
 static int print_signed(FILE *to, struct bytes bytes)
 {
-	cJSON *json = cJSON_ParseWithLength((const char *)bytes.data, bytes.size);
+	cJSON *json;
+	int rc = json_parse(&json, bytes);
 	const cJSON *payload = cJSON_GetObjectItemCaseSensitive(json, "payload"), *signature;
 	uint8_t text[METADATA_FILE_BYTES_MAX];
 	size_t size = 0;
@@ -359,9 +361,11 @@ static int print_signed(FILE *to, struct bytes bytes)
 	    sodium_base642bin(text, sizeof(text), payload->valuestring,
 			      strlen(payload->valuestring), NULL, &size, NULL,
 			      sodium_base64_VARIANT_ORIGINAL) == 0)
-		inner = cJSON_ParseWithLength((const char *)text, size);
-	if (inner)
-		shown = cJSON_Print(inner);
+		rc = json_parse(&inner, (struct bytes){ text, size });
+	if (inner) {
+		shown = json_indented(inner);
+		rc = shown ? 0 : -ENOMEM;
+	}
 	if (shown) {
 		fprintf(to,
 			"signed file, %zu bytes (signatures not checked here, see verify)\n%s\n",
@@ -377,7 +381,7 @@ static int print_signed(FILE *to, struct bytes bytes)
 	cJSON_free(shown);
 	cJSON_Delete(inner);
 	cJSON_Delete(json);
-	return shown ? 0 : -EBADMSG;
+	return shown || rc < 0 ? rc : -EBADMSG;
 }
 
 /* Prints the size of a picture or, if it does not decode as one, of a tile. */
@@ -425,7 +429,9 @@ int inspect_bytes(FILE *to, struct bytes bytes)
 		if (bytes.size < size || memcmp(bytes.data, forms[i].magic, size) != 0)
 			continue;
 		rc = forms[i].print(to, bytes);
-		if (rc < 0)
+		if (rc == -ENOMEM)
+			fprintf(to, "cannot be decoded: no memory is left\n");
+		else if (rc < 0)
 			fprintf(to,
 				"damaged: begins like an object of a release, but cannot be decoded\n");
 		return rc;

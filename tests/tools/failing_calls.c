@@ -315,9 +315,14 @@ __attribute__((destructor)) static void tell_left(void)
 		return;
 	pthread_mutex_lock(&blocks_lock);
 	for (size_t i = 0; i < CHAINS; i++)
-		for (const struct block *block = chains[i]; block; block = block->next)
-			dprintf(out, "block from %#tx\n",
-				block->from - program.begin + program.offset);
+		for (const struct block *block = chains[i]; block; block = block->next) {
+			char line[48]; /* dprintf frees, which would wait for the lock */
+
+			snprintf(line, sizeof(line), "block from %#tx\n",
+				 block->from - program.begin + program.offset);
+			if (REAL(write)(out, line, strlen(line)) < 0)
+				abort();
+		}
 	pthread_mutex_unlock(&blocks_lock);
 	tell_descriptors(out);
 	close(out);
