@@ -273,32 +273,41 @@ static void raise_floors(struct record *record, const struct record *other)
 		record_set_time_floor(record, record_time_floor_s(other));
 }
 
-/* Returns the version of the trust root; 0 if there is none or if it is not a root file. */
-static uint32_t root_version(const struct record *record)
+/* Sets *out to the version of the trust root; 0: there is none, or it is not a root file. -ENOMEM.
+ */
+static int root_version(uint32_t *out, const struct record *record)
 {
 	struct trust_root root;
+	int rc = trust_root_first(&root, buffer_bytes(&record->trust), NULL);
 
-	return trust_root_first(&root, buffer_bytes(&record->trust), NULL) == 0 ? root.version : 0;
+	*out = rc == 0 ? root.version : 0;
+	return rc == -ENOMEM ? rc : 0;
 }
 
 /* An older database that was put back must not lower the floors, so the floors of the second copy
  * count too, and so do its files of The Update Framework. But a second copy with an older trust
  * root, or with older such files, must not raise the floors: the newer root may have cleared them,
  * and the power may have failed between the two writes. */
-static void compare_with_second(struct state *state)
+static int compare_with_second(struct state *state)
 {
 	struct record second;
+	uint32_t its_root = 0, root = 0;
+	int rc;
 
 	record_init(&second);
-	if (record_read_second(&second, state->path) == 0 &&
-	    root_version(&second) >= root_version(&state->record) &&
-	    second.tuf.changes >= state->record.tuf.changes) {
+	rc = record_read_second(&second, state->path);
+	if (rc == 0)
+		rc = root_version(&its_root, &second);
+	if (rc == 0)
+		rc = root_version(&root, &state->record);
+	if (rc == 0 && its_root >= root && second.tuf.changes >= state->record.tuf.changes) {
 		raise_floors(&state->record, &second);
 		/* The database is always written first, so this one is an older one put back. */
 		if (second.tuf.changes > state->record.tuf.changes)
 			record_copy_tuf(&state->record, &second);
 	}
 	record_finish(&second);
+	return rc == -ENOMEM ? rc : 0; /* otherwise there is no second copy to use */
 }
 
 /* The database could not be read (rc says why): uses the second copy, if that is intact. */
@@ -347,10 +356,12 @@ int state_create(struct state **out, const char *path)
 	record_init(&state->record);
 	record_drop_leftovers(path);
 	rc = open_patiently(state);
-	if (rc < 0)
+	if (rc < 0) {
 		recover(state, rc);
-	else
-		compare_with_second(state);
+	} else if ((rc = compare_with_second(state)) < 0) {
+		state_destroy(state);
+		return rc;
+	}
 	state->written_time_floor_s = record_time_floor_s(&state->record);
 	*out = state;
 	return 0;

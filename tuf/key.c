@@ -2,12 +2,15 @@
 #include "tuf/key.h"
 
 #include <cjson/cJSON.h>
+#include <errno.h>
 #include <openssl/bio.h>
+#include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <sodium.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -20,6 +23,45 @@ struct signature {
 	uint8_t bytes[SIGNATURE_BYTES_MAX];
 	size_t size;
 };
+
+/* ---- OpenSSL's memory: its errors name a lack of it often, but not always */
+
+static _Thread_local bool lacked_memory;
+
+static void *allocate(size_t size, const char *file, int line)
+{
+	void *at = malloc(size);
+
+	(void)file;
+	(void)line;
+	lacked_memory |= !at && size > 0;
+	return at;
+}
+
+static void *allocate_again(void *old, size_t size, const char *file, int line)
+{
+	void *at = realloc(old, size);
+
+	(void)file;
+	(void)line;
+	lacked_memory |= !at && size > 0;
+	return at;
+}
+
+static void release(void *at, const char *file, int line)
+{
+	(void)file;
+	(void)line;
+	free(at);
+}
+
+/* Before OpenSSL has allocated anything; afterwards it would refuse. */
+__attribute__((constructor)) static void begin(void)
+{
+	(void)CRYPTO_set_mem_functions(allocate, allocate_again, release);
+}
+
+/* ---- keys' members */
 
 static const char *text(const cJSON *object, const char *name)
 {
@@ -127,8 +169,8 @@ static enum scheme scheme_of(const cJSON *key)
 }
 
 /* Names the key and, with a signature, verifies it. */
-static bool judge(const cJSON *key, struct bytes message, const struct signature *signature,
-		  struct tuf_key_name *name)
+static int judge(const cJSON *key, struct bytes message, const struct signature *signature,
+		 struct tuf_key_name *name)
 {
 	const char *public = text(cJSON_GetObjectItemCaseSensitive(key, "keyval"), "public");
 	const enum scheme scheme = scheme_of(key);
@@ -137,28 +179,30 @@ static bool judge(const cJSON *key, struct bytes message, const struct signature
 	bool ok;
 
 	if (scheme == SCHEME_NONE || !public || strlen(public) > PUBLIC_CHARS_MAX)
-		return false;
+		return 0;
 	if (scheme == SCHEME_ED25519)
 		return read_ed25519(public, raw, name) &&
 		       (!signature || verify_ed25519(raw, message, signature));
+	lacked_memory = false;
 	pem = read_pem(public);
 	ok = pem && (scheme == SCHEME_RSA ? is_rsa(pem) : is_p256(pem)) && name_key(pem, name) &&
 	     (!signature || verify(pem, scheme == SCHEME_RSA, message, signature));
 	EVP_PKEY_free(pem);
 	ERR_clear_error();
-	return ok;
+	return lacked_memory && !ok ? -ENOMEM : ok;
 }
 
-bool tuf_key_signed(const cJSON *key, struct bytes message, const char *signature,
-		    struct tuf_key_name *name)
+int tuf_key_signed(const cJSON *key, struct bytes message, const char *signature,
+		   struct tuf_key_name *name)
 {
 	struct signature read;
 
-	return read_hex(read.bytes, sizeof(read.bytes), &read.size, signature) &&
-	       judge(key, message, &read, name);
+	if (!read_hex(read.bytes, sizeof(read.bytes), &read.size, signature))
+		return 0;
+	return judge(key, message, &read, name);
 }
 
-bool tuf_key_name_of(const cJSON *key, struct tuf_key_name *name)
+int tuf_key_name_of(const cJSON *key, struct tuf_key_name *name)
 {
 	return judge(key, (struct bytes){ NULL, 0 }, NULL, name);
 }

@@ -17,12 +17,13 @@ struct tuf_key_name {
 	uint8_t sha256[32];
 };
 
-/* Returns whether the key, an object with keytype, scheme and keyval, signed the message; signature
- * is hexadecimal. name is set to the key's name. A key of a kind that is not known, or that is
- * damaged or too short (RSA below 2048 bits), has signed nothing. */
-bool tuf_key_signed(const struct cJSON *key, struct bytes message, const char *signature,
-		    struct tuf_key_name *name);
-/* Sets *name to a key's name. Returns false for a key that can sign nothing, as above. */
-bool tuf_key_name_of(const struct cJSON *key, struct tuf_key_name *name);
+/* Returns 1 if the key, an object with keytype, scheme and keyval, signed the message, 0 if it did
+ * not, or -ENOMEM; signature is hexadecimal. name is set to the key's name. A key of a kind that is
+ * not known, or that is damaged or too short (RSA below 2048 bits), has signed nothing. */
+must_check int tuf_key_signed(const struct cJSON *key, struct bytes message, const char *signature,
+			      struct tuf_key_name *name);
+/* Sets *name to a key's name. Returns 1; 0 for a key that can sign nothing, as above; or -ENOMEM.
+ */
+must_check int tuf_key_name_of(const struct cJSON *key, struct tuf_key_name *name);
 
 #endif

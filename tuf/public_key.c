@@ -154,8 +154,10 @@ int tuf_public_key_read(struct tuf_public_key *out, struct bytes file)
 		rc = take_json(&out->entry, file); /* the text of a key in it is PEM, too */
 	else if (has(file, "-----BEGIN "))
 		rc = take_pem(&out->entry, file);
-	if (rc == 0 && !tuf_key_name_of(out->entry, &out->name))
-		rc = -EOPNOTSUPP;
+	if (rc == 0) {
+		rc = tuf_key_name_of(out->entry, &out->name);
+		rc = rc < 0 ? rc : rc > 0 ? 0 : -EOPNOTSUPP;
+	}
 	return rc < 0 ? rc : set_id(out);
 }
 

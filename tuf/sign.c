@@ -183,22 +183,26 @@ int tuf_sign(struct buffer *out, const cJSON *content, const struct tuf_signer *
 
 /* ---- signatures that were made elsewhere */
 
-/* Returns the id of the role's key that made a signature in hexadecimal, borrowed, or NULL. */
-static const char *maker_of(const cJSON *keys, const cJSON *role, struct bytes message,
-			    const char *hex)
+/* Finds the id of the role's key that made a signature in hexadecimal; *out is borrowed. Returns 0,
+ * -EKEYREJECTED if none did, or -ENOMEM. */
+static int maker_of(const char **out, const cJSON *keys, const cJSON *role, struct bytes message,
+		    const char *hex)
 {
 	const cJSON *id;
 	struct tuf_key_name name;
+	int made;
 
 	cJSON_ArrayForEach(id, cJSON_GetObjectItemCaseSensitive(role, "keyids"))
 	{
-		const char *text = cJSON_GetStringValue(id);
-		const cJSON *key = text ? cJSON_GetObjectItemCaseSensitive(keys, text) : NULL;
+		const cJSON *key;
 
-		if (key && tuf_key_signed(key, message, hex, &name))
-			return text;
+		*out = cJSON_GetStringValue(id);
+		key = *out ? cJSON_GetObjectItemCaseSensitive(keys, *out) : NULL;
+		made = key ? tuf_key_signed(key, message, hex, &name) : 0;
+		if (made != 0)
+			return made < 0 ? made : 0;
 	}
-	return NULL;
+	return -EKEYREJECTED;
 }
 
 static void remove_of(cJSON *signatures, const char *id)
@@ -217,24 +221,25 @@ int tuf_add_signature(cJSON *signatures, const cJSON *keys, const cJSON *role, s
 {
 	const size_t room = 2 * signature.size + 1;
 	char *hex = malloc(room);
-	cJSON *entry = NULL;
 	const char *id;
-	int rc = -ENOMEM;
+	cJSON *entry;
+	int rc;
 
 	if (!hex)
-		return rc;
+		return -ENOMEM;
 	sodium_bin2hex(hex, room, signature.data, signature.size);
-	id = maker_of(keys, role, message, hex);
-	if (!id) {
-		rc = -EKEYREJECTED;
-	} else if ((entry = cJSON_CreateObject()) && cJSON_AddStringToObject(entry, "keyid", id) &&
-		   cJSON_AddStringToObject(entry, "sig", hex)) {
-		remove_of(signatures, id);
-		if (json_append(signatures, entry))
-			rc = 0;
-		entry = NULL;
+	rc = maker_of(&id, keys, role, message, hex);
+	if (rc == 0) {
+		entry = cJSON_CreateObject();
+		if (cJSON_AddStringToObject(entry, "keyid", id) &&
+		    cJSON_AddStringToObject(entry, "sig", hex)) {
+			remove_of(signatures, id);
+			rc = json_append(signatures, entry) ? 0 : -ENOMEM;
+		} else {
+			cJSON_Delete(entry);
+			rc = -ENOMEM;
+		}
 	}
-	cJSON_Delete(entry);
 	free(hex);
 	return rc;
 }

@@ -271,23 +271,29 @@ static bool is_new(const struct tuf_key_name *names, uint32_t count)
 	return true;
 }
 
-static uint32_t count_signers(const struct tuf_file *file, const cJSON *keys, const cJSON *role,
-			      struct bytes message)
+/* Returns how many, or -ENOMEM. */
+static int count_signers(const struct tuf_file *file, const cJSON *keys, const cJSON *role,
+			 struct bytes message)
 {
 	struct tuf_key_name names[SIGNATURES_MAX];
 	uint32_t count = 0;
 	const cJSON *keyid;
+	int rc = 0;
 
 	cJSON_ArrayForEach(keyid, member(role, "keyids"))
 	{
 		const char *signature = signature_by(file, keyid->valuestring);
 		const cJSON *key = member(keys, keyid->valuestring);
 
-		if (key && signature && count < SIGNATURES_MAX &&
-		    tuf_key_signed(key, message, signature, &names[count]) && is_new(names, count))
+		if (!key || !signature || count == SIGNATURES_MAX)
+			continue;
+		rc = tuf_key_signed(key, message, signature, &names[count]);
+		if (rc < 0)
+			return rc;
+		if (rc > 0 && is_new(names, count))
 			count++;
 	}
-	return count;
+	return (int)count;
 }
 
 int tuf_file_verify(const struct tuf_file *file, const cJSON *keys, const cJSON *role)
@@ -297,9 +303,10 @@ int tuf_file_verify(const struct tuf_file *file, const cJSON *keys, const cJSON 
 
 	buffer_init(&message, CANONICAL_BYTES_MAX);
 	rc = canonical_write(&message, file->content);
-	if (rc == 0 && count_signers(file, keys, role, buffer_bytes(&message)) <
-			       member(role, "threshold")->valuedouble)
-		rc = -EKEYREJECTED;
+	if (rc == 0)
+		rc = count_signers(file, keys, role, buffer_bytes(&message));
+	if (rc >= 0)
+		rc = rc < member(role, "threshold")->valuedouble ? -EKEYREJECTED : 0;
 	buffer_finish(&message);
 	return rc;
 }

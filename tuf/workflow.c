@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "base/transient.h"
 #include "tuf/role_files.h"
 #include "tuf/targets.h"
 
@@ -99,17 +100,22 @@ static const cJSON *snapshot_meta(const struct tuf_client *client)
 	return tuf_meta(&client->timestamp, "snapshot.json");
 }
 
-/* What was stored counts against a rollback while its keys are the root's, even if it expired. */
-static void load_timestamp(struct tuf_client *client)
+/* What was stored counts against a rollback while its keys are the root's, even if it expired. A
+ * failure that says nothing of the file fails the refresh, or it would not count. */
+static int load_timestamp(struct tuf_client *client)
 {
 	struct buffer bytes;
 	struct tuf_file file = { 0 };
 
-	if (tuf_load(client, "timestamp", TIMESTAMP_BYTES_MAX, &bytes) == 0 &&
-	    open_top(client, &file, &bytes, TUF_TIMESTAMP) == 0)
+	int rc = tuf_load(client, "timestamp", TIMESTAMP_BYTES_MAX, &bytes);
+
+	if (rc < 0)
+		tuf_refuse(client, rc, "the stored timestamp: %s", strerror(-rc));
+	else if ((rc = open_top(client, &file, &bytes, TUF_TIMESTAMP)) == 0)
 		hold(&client->timestamp, &file);
 	tuf_file_finish(&file);
 	buffer_finish(&bytes);
+	return is_transient(rc) ? rc : 0;
 }
 
 static int take_timestamp(struct tuf_client *client, const struct buffer *bytes)
@@ -142,9 +148,10 @@ static int take_timestamp(struct tuf_client *client, const struct buffer *bytes)
 static int update_timestamp(struct tuf_client *client)
 {
 	struct buffer bytes;
-	int rc;
+	int rc = load_timestamp(client);
 
-	load_timestamp(client);
+	if (rc < 0)
+		return rc;
 	rc = tuf_fetch(client, "timestamp", 0, TIMESTAMP_BYTES_MAX, &bytes);
 	if (rc == 0)
 		rc = take_timestamp(client, &bytes);
@@ -154,16 +161,20 @@ static int update_timestamp(struct tuf_client *client)
 
 /* ---- snapshot (section 5.5) */
 
-static void load_snapshot(struct tuf_client *client)
+static int load_snapshot(struct tuf_client *client)
 {
 	struct buffer bytes;
 	struct tuf_file file = { 0 };
 
-	if (tuf_load(client, "snapshot", SNAPSHOT_BYTES_MAX, &bytes) == 0 &&
-	    open_top(client, &file, &bytes, TUF_SNAPSHOT) == 0)
+	int rc = tuf_load(client, "snapshot", SNAPSHOT_BYTES_MAX, &bytes);
+
+	if (rc < 0)
+		tuf_refuse(client, rc, "the stored snapshot: %s", strerror(-rc));
+	else if ((rc = open_top(client, &file, &bytes, TUF_SNAPSHOT)) == 0)
 		hold(&client->snapshot, &file);
 	tuf_file_finish(&file);
 	buffer_finish(&bytes);
+	return is_transient(rc) ? rc : 0;
 }
 
 /* No targets file may go, or go back. */
@@ -215,9 +226,10 @@ static int update_snapshot(struct tuf_client *client)
 	const cJSON *meta = snapshot_meta(client);
 	const uint32_t version = tuf_meta_version(meta);
 	struct buffer bytes;
-	int rc;
+	int rc = load_snapshot(client);
 
-	load_snapshot(client);
+	if (rc < 0)
+		return rc;
 	if (client->snapshot.json && client->snapshot.version == version &&
 	    client->snapshot.expires_s > client->now_s)
 		return 0;

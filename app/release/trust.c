@@ -48,20 +48,18 @@ static bool is_replaced(const struct role_keys *old, const struct role_keys *nex
 	return kept_count(old, next) < next->threshold;
 }
 
-static void clear_floors(struct trust *trust, const struct trust_root *old, struct bytes remembered)
+static void clear_floors(struct trust *trust, const struct trust_root *old, bool is_valid)
 {
 	const struct role_keys *was = old->roles, *now = trust->root.roles;
 	const bool stamps_withdrawn = is_withdrawn(&was[META_TIMESTAMP], &now[META_TIMESTAMP]);
 	const bool releases_withdrawn = is_withdrawn(&was[META_RELEASE], &now[META_RELEASE]);
-	struct release release;
 
 	trust->have_timestamp = false; /* the key of the role may have changed */
 	if (stamps_withdrawn)
 		trust->time_floor_s = 0;
 	if (is_replaced(&was[META_TIMESTAMP], &now[META_TIMESTAMP]) ||
 	    is_replaced(&was[META_RELEASE], &now[META_RELEASE]) ||
-	    (stamps_withdrawn && releases_withdrawn &&
-	     release_decode(&release, &trust->root, remembered, NULL) < 0))
+	    (stamps_withdrawn && releases_withdrawn && !is_valid))
 		trust->sequence_floor = 0;
 }
 
@@ -69,16 +67,20 @@ int trust_root(struct trust *trust, struct bytes file, struct bytes remembered, 
 {
 	const struct trust_root old = trust->root;
 	struct trust_root next = trust->root;
-	int rc;
+	struct release release;
+	int rc, valid;
 
 	if (!trust->trusted)
 		return refuse(-ENOKEY, why, "no trust root: start once with --trust root/1.json");
 	rc = trust_root_next(&next, file, why);
-	if (rc == 0) {
-		trust->root = next;
-		clear_floors(trust, &old, remembered);
-	}
-	return rc;
+	if (rc < 0)
+		return rc;
+	valid = release_decode(&release, &next, remembered, NULL);
+	if (valid == -ENOMEM)
+		return refuse(valid, why, "no memory is left");
+	trust->root = next;
+	clear_floors(trust, &old, valid == 0);
+	return 0;
 }
 
 /* ---- timestamps and releases */

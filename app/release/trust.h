@@ -34,8 +34,8 @@ struct trust_time {
 
 /* Each of these functions returns 0, or refuses the file: -EBADMSG and -EKEYREJECTED (see
  * format/metadata.h), -ESTALE (older than what was seen before), -EKEYEXPIRED, -ENOKEY (no trust
- * root yet). *why then says so for people; it is static. Files are borrowed for the call. trust_pin
- * sets the first trust root. */
+ * root yet), or -ENOMEM. *why then says so for people; it is static. Files are borrowed for the
+ * call. trust_pin sets the first trust root. */
 must_check int trust_pin(struct trust *trust, struct bytes file, const char **why);
 /* Replaces the trust root by the next one, and clears floors that the withdrawn keys may have set.
  * remembered: the release.json in use; empty if none is known. What is cleared:

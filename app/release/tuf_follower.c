@@ -66,12 +66,20 @@ static void note(struct tuf_follower *follower, enum tuf_type type)
 
 static int keep(struct tuf_follower *follower, enum tuf_type type, struct bytes file)
 {
-	struct buffer *kept = &follower->kept[type];
+	struct buffer fresh;
+	int rc;
 
-	buffer_clear(kept);
-	buffer_put(kept, file.data, file.size);
+	buffer_init(&fresh, STATE_FILE_BYTES_MAX);
+	buffer_put(&fresh, file.data, file.size);
+	rc = fresh.error;
+	if (rc < 0) {
+		buffer_finish(&fresh);
+		return rc;
+	}
+	buffer_finish(&follower->kept[type]);
+	follower->kept[type] = fresh;
 	note(follower, type);
-	return kept->error;
+	return 0;
 }
 
 int tuf_follower_init(struct tuf_follower *follower, const struct state_tuf *kept,
@@ -335,42 +343,52 @@ static int load(void *context, const char *name, struct buffer *out)
 	return out->error;
 }
 
-/* Forgets a kept file that is not signed any more as this root wants it. Returns whether it did. */
-static bool forget_withdrawn(struct tuf_follower *follower, const struct tuf_file *root,
-			     enum tuf_type type)
+/* Returns 1 if a kept file is not signed any more as this root wants it, 0 if it is or there is
+ * none, or -ENOMEM. */
+static int is_withdrawn(const struct tuf_follower *follower, const struct tuf_file *root,
+			enum tuf_type type)
 {
 	struct tuf_file file = { 0 };
 	const char *why;
-	const bool withdrawn =
-		tuf_file_parse(&file, buffer_bytes(&follower->kept[type]), type, &why) == 0 &&
-		tuf_file_verify(&file, tuf_root_keys(root), tuf_root_role(root, type)) ==
-			-EKEYREJECTED;
+	int rc = tuf_file_parse(&file, buffer_bytes(&follower->kept[type]), type, &why);
 
+	if (rc == 0)
+		rc = tuf_file_verify(&file, tuf_root_keys(root), tuf_root_role(root, type));
 	tuf_file_finish(&file);
-	if (withdrawn) {
-		buffer_clear(&follower->kept[type]);
-		follower->expires_s[type] = follower->version[type] = 0;
-	}
-	return withdrawn;
+	return rc == -ENOMEM ? rc : rc == -EKEYREJECTED;
 }
 
-/* Forgets what only withdrawn keys have signed, and notes which floors they may have set. */
-static void forget_all_withdrawn(struct tuf_follower *follower, struct bytes root)
+static void forget(struct tuf_follower *follower, enum tuf_type type)
 {
+	buffer_clear(&follower->kept[type]);
+	follower->expires_s[type] = follower->version[type] = 0;
+	if (type == TUF_TIMESTAMP)
+		follower->issued_s = 0;
+	follower->clear |=
+		type == TUF_TIMESTAMP ? STATE_CLEAR_BOTH_FLOORS : STATE_CLEAR_SEQUENCE_FLOOR;
+}
+
+/* Keeps a root, forgets what only keys that it withdraws have signed, and notes which floors they
+ * may have set; all of it or, on failure, nothing. */
+static int keep_root(struct tuf_follower *follower, struct bytes root)
+{
+	bool withdrawn[TUF_TYPES] = { false };
 	struct tuf_file file = { 0 };
 	const char *why;
+	int rc = tuf_file_parse(&file, root, TUF_ROOT, &why), is;
 
-	if (tuf_file_parse(&file, root, TUF_ROOT, &why) == 0) {
-		if (forget_withdrawn(follower, &file, TUF_TIMESTAMP)) {
-			follower->clear |= STATE_CLEAR_BOTH_FLOORS;
-			follower->issued_s = 0;
-		}
-		if (forget_withdrawn(follower, &file, TUF_SNAPSHOT))
-			follower->clear |= STATE_CLEAR_SEQUENCE_FLOOR;
-		if (forget_withdrawn(follower, &file, TUF_TARGETS))
-			follower->clear |= STATE_CLEAR_SEQUENCE_FLOOR;
+	for (int type = TUF_TIMESTAMP; rc == 0 && type < TUF_TYPES; type++) {
+		is = is_withdrawn(follower, &file, (enum tuf_type)type);
+		withdrawn[type] = is > 0;
+		rc = is < 0 ? is : 0;
 	}
 	tuf_file_finish(&file);
+	if (rc == 0)
+		rc = keep(follower, TUF_ROOT, root);
+	for (int type = TUF_TIMESTAMP; rc == 0 && type < TUF_TYPES; type++)
+		if (withdrawn[type])
+			forget(follower, (enum tuf_type)type);
+	return rc;
 }
 
 /* Delegated targets are not kept: the round has them. */
@@ -382,12 +400,10 @@ static int store(void *context, const char *name, struct bytes file)
 
 	if (type == TUF_TYPES)
 		return 0;
-	if (type == TUF_ROOT) {
-		forget_all_withdrawn(follower, file);
+	if (type == TUF_ROOT)
 		drop_roots(&follower->rounds[run->source]);
-	}
 	follower->changed = true;
-	return keep(follower, type, file);
+	return type == TUF_ROOT ? keep_root(follower, file) : keep(follower, type, file);
 }
 
 /* ---- release.json */

@@ -145,6 +145,8 @@ static int read_state(struct updater *updater, struct state *state)
 	if (state_release(state, &release) == 0) {
 		updater->shown = place_of(&release);
 		buffer_put(&updater->shown_file, release.file.data, release.file.size);
+		if (updater->shown_file.error)
+			return updater->shown_file.error; /* whose floor is it? */
 	}
 	if (state_previous(state, &release) == 0)
 		updater->before = place_of(&release);

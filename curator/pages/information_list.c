@@ -53,9 +53,10 @@ static cJSON *row_of(const cJSON *parts, const char *id, size_t bytes)
 
 	cJSON_ArrayForEach(row, parts)
 	{
-		const char *its = cJSON_GetObjectItemCaseSensitive(row, "id")->valuestring;
+		const char *its = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(row, "id"));
 
-		if (strlen(its) == bytes && memcmp(its, id, bytes) == 0)
+		/* none: no memory was left for it, and the list will not be sent */
+		if (its && strlen(its) == bytes && memcmp(its, id, bytes) == 0)
 			return row;
 	}
 	return NULL;
@@ -73,8 +74,7 @@ static cJSON *add_document_row(cJSON *documents, const char *id, size_t bytes)
 	row = cJSON_CreateObject();
 	cJSON_AddStringToObject(row, "id", name);
 	cJSON_AddObjectToObject(row, "pages");
-	json_append(documents, row);
-	return row;
+	return json_append(documents, row) ? row : NULL;
 }
 
 /* A page, its recording, or the words of that. */

@@ -162,14 +162,14 @@ static const char *id_of(const struct tuf_file *root, enum exchange_key key,
 	const char *found = NULL;
 	const cJSON *id;
 	cJSON *entry = tuf_signer_init(&signer, of->secret) == 0 ? tuf_signer_key(&signer) : NULL;
-	const bool is_key = entry && tuf_key_name_of(entry, &name);
+	const bool is_key = entry && tuf_key_name_of(entry, &name) > 0;
 
 	cJSON_ArrayForEach(id, keyids(tuf_root_role(root, type_of[key])))
 	{
 		const cJSON *named = cJSON_GetObjectItemCaseSensitive(tuf_root_keys(root),
 								      cJSON_GetStringValue(id));
 
-		if (is_key && named && tuf_key_name_of(named, &other) &&
+		if (is_key && named && tuf_key_name_of(named, &other) > 0 &&
 		    memcmp(name.sha256, other.sha256, sizeof(name.sha256)) == 0)
 			found = cJSON_GetStringValue(id);
 	}

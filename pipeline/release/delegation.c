@@ -118,8 +118,14 @@ static int check_unused(const struct given *given, const cJSON *keys, const cJSO
 		const cJSON *entry = ids ? member(keys, cJSON_GetStringValue(key)) : key;
 
 		for (uint32_t i = 0; entry && i < given->options->key_count; i++) {
-			if (!tuf_key_name_of(entry, &name) ||
-			    !same_key(&name, &given->keys[i].name))
+			const int named = tuf_key_name_of(entry, &name);
+
+			if (named < 0) {
+				log_error("pipeline", "%s: %s", given->options->key_files[i],
+					  strerror(-named));
+				return named;
+			}
+			if (named == 0 || !same_key(&name, &given->keys[i].name))
 				continue;
 			log_error("pipeline",
 				  "%s: this key is used already, by %s; whoever has it could sign "

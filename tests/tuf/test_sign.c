@@ -8,6 +8,7 @@
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "tests/check.h"
@@ -153,7 +154,7 @@ static void reads_public_key(EVP_PKEY *key)
 	for (size_t i = 0; i < signature.size; i++)
 		snprintf(hex + 2 * i, 3, "%02x", signature.data[i]);
 	CHECK(tuf_public_key_read(&read, buffer_bytes(&pair.public_key)) == 0);
-	CHECK(tuf_key_signed(read.entry, message, hex, &name));
+	CHECK(tuf_key_signed(read.entry, message, hex, &name) == 1);
 	CHECK(memcmp(&name, &read.name, sizeof(name)) == 0);
 	/* the entry, as other tools write it to a file, is the same key */
 	text = cJSON_Print(read.entry);
@@ -213,12 +214,76 @@ static void reads_public_keys(void **state)
 	finish(&rsa);
 }
 
+/* ---- OpenSSL without memory */
+
+static long allocations, fails_at = -1; /* the fails_at-th from now on, from 0; -1: none */
+
+#ifdef __SANITIZE_ADDRESS__
+enum { CAN_FAIL = 0 };
+#else
+enum { CAN_FAIL = 1 };
+
+void *__libc_malloc(size_t size);
+void *__libc_realloc(void *old, size_t size);
+
+void *malloc(size_t size)
+{
+	return allocations++ == fails_at ? NULL : __libc_malloc(size);
+}
+
+void *realloc(void *old, size_t size)
+{
+	return allocations++ == fails_at ? NULL : __libc_realloc(old, size);
+}
+#endif
+
+static void lacks_memory_for(EVP_PKEY *key)
+{
+	struct pair pair = pair_of(key);
+	struct tuf_public_key read;
+	struct tuf_key_name name;
+	struct buffer signature;
+	char hex[2049];
+	int lacked = 0;
+
+	buffer_init(&signature, 1024);
+	CHECK(tuf_private_sign(&signature, buffer_bytes(&pair.private_key), message) == 0);
+	for (size_t i = 0; i < signature.size; i++)
+		snprintf(hex + 2 * i, 3, "%02x", signature.data[i]);
+	CHECK(tuf_public_key_read(&read, buffer_bytes(&pair.public_key)) == 0);
+	for (long n = 0, made = n; made >= n; n++) {
+		int signed_it;
+
+		allocations = 0;
+		fails_at = n;
+		signed_it = tuf_key_signed(read.entry, message, hex, &name);
+		made = allocations - 1;
+		fails_at = -1;
+		CHECK(signed_it == 1 || signed_it == -ENOMEM);
+		lacked += signed_it == -ENOMEM;
+	}
+	CHECK(lacked > 10);
+	tuf_public_key_finish(&read);
+	buffer_finish(&signature);
+	finish(&pair);
+}
+
+static void a_lack_of_memory_is_no_wrong_signature(void **state)
+{
+	(void)state;
+	if (!CAN_FAIL)
+		skip();
+	lacks_memory_for(EVP_EC_gen("P-256"));
+	lacks_memory_for(EVP_RSA_gen(2048));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(signs_with_ecdsa_and_rsa),
 		cmocka_unit_test(refuses_keys_that_are_none),
 		cmocka_unit_test(reads_public_keys),
+		cmocka_unit_test(a_lack_of_memory_is_no_wrong_signature),
 		cmocka_unit_test(writes_line_ends_as_json_does),
 	};
 

@@ -83,9 +83,13 @@ static int fetch(void *context, const char *name, struct buffer *out)
 	return take(&server, name, out);
 }
 
+static const char *unreadable; /* a stored file; NULL: none */
+
 static int load(void *context, const char *name, struct buffer *out)
 {
 	(void)context;
+	if (unreadable && strcmp(name, unreadable) == 0)
+		return -EIO;
 	return take(&stored, name, out);
 }
 
@@ -303,6 +307,33 @@ static void a_target_is_found_and_known_by_its_bytes(void **state)
 	tuf_client_finish(&client);
 }
 
+/* Or a disk that fails for a moment would let an older release in. */
+static void what_was_stored_counts_where_it_cannot_be_read(void **state)
+{
+	static const char *const names[] = { "timestamp.json", "snapshot.json" };
+	struct buffer old[2];
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		buffer_init(&old[i], 1 << 16);
+		CHECK(take(&server, i == 0 ? "timestamp.json" : "1.snapshot.json", &old[i]) == 0);
+	}
+	publish_all(2);
+	CHECK(refresh() == 0);
+	put(&server, "timestamp.json", buffer_bytes(&old[0]));
+	CHECK(refresh() == -ESTALE);
+	for (int i = 0; i < 2; i++) {
+		unreadable = names[i];
+		CHECK(refresh() == (i == 0 ? -EIO : -ESTALE));
+	}
+	publish_all(3);
+	CHECK(refresh() == -EIO); /* the snapshot */
+	unreadable = NULL;
+	CHECK(refresh() == 0);
+	buffer_finish(&old[0]);
+	buffer_finish(&old[1]);
+}
+
 static void arbitrary_installation(void **state)
 {
 	(void)state;
@@ -478,6 +509,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(an_honest_repository_is_followed, prepare, clear),
 		cmocka_unit_test_setup_teardown(a_target_is_found_and_known_by_its_bytes, prepare,
 						clear),
+		cmocka_unit_test_setup_teardown(what_was_stored_counts_where_it_cannot_be_read,
+						prepare, clear),
 		cmocka_unit_test_setup_teardown(arbitrary_installation, prepare, clear),
 		cmocka_unit_test_setup_teardown(endless_data, prepare, clear),
 		cmocka_unit_test_setup_teardown(rollback, prepare, clear),
