@@ -4,13 +4,11 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <openssl/bio.h>
-#include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <sodium.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -23,45 +21,6 @@ struct signature {
 	uint8_t bytes[SIGNATURE_BYTES_MAX];
 	size_t size;
 };
-
-/* ---- OpenSSL's memory: its errors name a lack of it often, but not always */
-
-static _Thread_local bool lacked_memory;
-
-static void *allocate(size_t size, const char *file, int line)
-{
-	void *at = malloc(size);
-
-	(void)file;
-	(void)line;
-	lacked_memory |= !at && size > 0;
-	return at;
-}
-
-static void *allocate_again(void *old, size_t size, const char *file, int line)
-{
-	void *at = realloc(old, size);
-
-	(void)file;
-	(void)line;
-	lacked_memory |= !at && size > 0;
-	return at;
-}
-
-static void release(void *at, const char *file, int line)
-{
-	(void)file;
-	(void)line;
-	free(at);
-}
-
-/* Before OpenSSL has allocated anything; afterwards it would refuse. */
-__attribute__((constructor)) static void begin(void)
-{
-	(void)CRYPTO_set_mem_functions(allocate, allocate_again, release);
-}
-
-/* ---- keys' members */
 
 static const char *text(const cJSON *object, const char *name)
 {
@@ -95,15 +54,6 @@ static bool verify_ed25519(const uint8_t key[crypto_sign_PUBLICKEYBYTES], struct
 }
 
 /* ---- ECDSA and RSA */
-
-static EVP_PKEY *read_pem(const char *public)
-{
-	BIO *bio = BIO_new_mem_buf(public, -1);
-	EVP_PKEY *key = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
-
-	BIO_free(bio);
-	return key;
-}
 
 static bool is_p256(EVP_PKEY *key)
 {
@@ -168,6 +118,32 @@ static enum scheme scheme_of(const cJSON *key)
 	return SCHEME_NONE;
 }
 
+/* Returns whether a lack of memory is among the errors that OpenSSL has noted, and clears them. */
+static bool lacked_memory(void)
+{
+	unsigned long error;
+	bool lacked = false;
+
+	while ((error = ERR_get_error()))
+		lacked |= ERR_GET_REASON(error) == ERR_R_MALLOC_FAILURE;
+	return lacked;
+}
+
+/* The same as judge, for the two kinds that OpenSSL has. */
+static int judge_pem(const char *public, enum scheme scheme, struct bytes message,
+		     const struct signature *signature, struct tuf_key_name *name)
+{
+	BIO *bio = BIO_new_mem_buf(public, -1);
+	EVP_PKEY *key = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
+	bool ok = key && (scheme == SCHEME_RSA ? is_rsa(key) : is_p256(key)) &&
+		  name_key(key, name) &&
+		  (!signature || verify(key, scheme == SCHEME_RSA, message, signature));
+
+	EVP_PKEY_free(key);
+	BIO_free(bio);
+	return (lacked_memory() && !ok) || !bio ? -ENOMEM : ok;
+}
+
 /* Names the key and, with a signature, verifies it. */
 static int judge(const cJSON *key, struct bytes message, const struct signature *signature,
 		 struct tuf_key_name *name)
@@ -175,21 +151,16 @@ static int judge(const cJSON *key, struct bytes message, const struct signature 
 	const char *public = text(cJSON_GetObjectItemCaseSensitive(key, "keyval"), "public");
 	const enum scheme scheme = scheme_of(key);
 	uint8_t raw[crypto_sign_PUBLICKEYBYTES];
-	EVP_PKEY *pem;
-	bool ok;
+	int ok;
 
 	if (scheme == SCHEME_NONE || !public || strlen(public) > PUBLIC_CHARS_MAX)
 		return 0;
 	if (scheme == SCHEME_ED25519)
 		return read_ed25519(public, raw, name) &&
 		       (!signature || verify_ed25519(raw, message, signature));
-	lacked_memory = false;
-	pem = read_pem(public);
-	ok = pem && (scheme == SCHEME_RSA ? is_rsa(pem) : is_p256(pem)) && name_key(pem, name) &&
-	     (!signature || verify(pem, scheme == SCHEME_RSA, message, signature));
-	EVP_PKEY_free(pem);
-	ERR_clear_error();
-	return lacked_memory && !ok ? -ENOMEM : ok;
+	ok = judge_pem(public, scheme, message, signature, name);
+	/* OpenSSL does not note every lack of memory; one that lasts, the next try begins with. */
+	return ok == 0 ? judge_pem(public, scheme, message, signature, name) : ok;
 }
 
 int tuf_key_signed(const cJSON *key, struct bytes message, const char *signature,

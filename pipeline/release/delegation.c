@@ -167,6 +167,14 @@ static int check_path(const struct tuf_folder *folder, const char *role)
 	return taken ? -EEXIST : 0;
 }
 
+/* Returns 1 if the role's keys signed the file, 0 if not, or -ENOMEM. */
+static int is_signed(const struct tuf_file *file, const cJSON *keys, const cJSON *role)
+{
+	int rc = role ? tuf_file_verify(file, keys, role) : -EKEYREJECTED;
+
+	return rc == -ENOMEM ? rc : rc == 0;
+}
+
 /* Judges what becomes of the role's present release. keys and role: as they will be, or NULL. */
 static int check_release(const struct tuf_folder *folder, const struct delegation_options *options,
 			 const cJSON *keys, const cJSON *role)
@@ -176,14 +184,20 @@ static int check_release(const struct tuf_folder *folder, const struct delegatio
 	const cJSON *keys_before = member(delegations, "keys");
 	struct tuf_file file;
 	uint32_t version;
-	int rc = tuf_folder_read_role(folder, options->role, &file, &version);
-	const bool stays =
-		rc == 0 && (!file.json || !before || tuf_file_verify(&file, keys_before, before) ||
-			    (role && tuf_file_verify(&file, keys, role) == 0));
+	int rc = tuf_folder_read_role(folder, options->role, &file, &version), was, is = 0;
 
-	tuf_file_finish(&file);
-	if (rc < 0 || stays)
+	if (rc < 0)
 		return rc;
+	was = file.json ? is_signed(&file, keys_before, before) : 0;
+	if (was > 0)
+		is = is_signed(&file, keys, role);
+	tuf_file_finish(&file);
+	if (was < 0 || is < 0) {
+		log_error("pipeline", "%s: %s", options->role, strerror(ENOMEM));
+		return -ENOMEM;
+	}
+	if (was == 0 || is > 0)
+		return 0;
 	if (options->invalidate) {
 		log_warn("pipeline",
 			 "%s: its release (%u.%s.json) is not valid any more: terminals keep what "

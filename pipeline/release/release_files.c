@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/transient.h"
 #include "format/metadata_sign.h"
 
 static int make_path(char path[PATH_MAX], const char *release, const char *name)
@@ -79,21 +80,25 @@ int release_files_put(const char *release, const char *name, struct bytes bytes)
 	return rc < 0 ? rc : bytes_sync_folder_of(file.path);
 }
 
-/* Returns whether a release key of an earlier root signed the release. */
-static bool was_signed(struct release *out, const char *keys_folder, uint32_t newest,
-		       struct bytes release_file)
+/* Returns 0 if a release key of an earlier root signed the release, -EKEYREJECTED if none did, or
+ * what says neither. */
+static int check_earlier(struct release *out, const char *keys_folder, uint32_t newest,
+			 struct bytes release_file)
 {
 	struct trust_root earlier;
 	struct buffer file;
-	bool was = false;
+	int rc = -EKEYREJECTED;
 
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
-	for (uint32_t version = newest; !was && --version > 0;)
-		was = keys_read_root(&file, keys_folder, version) == 0 &&
-		      trust_root_first(&earlier, buffer_bytes(&file), NULL) == 0 &&
-		      release_decode(out, &earlier, release_file, NULL) == 0;
+	for (uint32_t version = newest; rc < 0 && !is_transient(rc) && --version > 0;) {
+		rc = keys_read_root(&file, keys_folder, version);
+		if (rc == 0)
+			rc = trust_root_first(&earlier, buffer_bytes(&file), NULL);
+		if (rc == 0)
+			rc = release_decode(out, &earlier, release_file, NULL);
+	}
 	buffer_finish(&file);
-	return was;
+	return rc == 0 || is_transient(rc) ? rc : -EKEYREJECTED;
 }
 
 static int read_release(struct release *out, const char *release, const char *name,
@@ -110,13 +115,16 @@ static int read_release(struct release *out, const char *release, const char *na
 		rc = buffer_read_file(&file, path);
 	if (rc == 0)
 		rc = release_decode(out, &keys->trust, buffer_bytes(&file), &why);
-	if (rc == -EKEYREJECTED &&
-	    was_signed(out, keys_folder, keys->trust.version, buffer_bytes(&file))) {
-		log_warn("pipeline",
-			 "%s: signed with a release.key that was exchanged since, so only its "
-			 "number counts",
-			 path);
-		rc = -ENOENT;
+	if (rc == -EKEYREJECTED) {
+		rc = check_earlier(out, keys_folder, keys->trust.version, buffer_bytes(&file));
+		why = strerror(-rc);
+		if (rc == 0) {
+			log_warn("pipeline",
+				 "%s: signed with a release.key that was exchanged since, so only "
+				 "its number counts",
+				 path);
+			rc = -ENOENT;
+		}
 	}
 	buffer_finish(&file);
 	if (rc == -EKEYREJECTED)
