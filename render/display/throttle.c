@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/compiler.h"
 #include "render/display/context.h"
 #include "render/display/gl.h"
 
@@ -23,22 +24,31 @@ void throttle_init(struct throttle *throttle)
 
 void throttle_finish(struct throttle *throttle)
 {
-	if (throttle->fence)
-		throttle->destroy(throttle->display, throttle->fence);
+	for (size_t i = 0; i < ARRAY_COUNT(throttle->fences); i++)
+		if (throttle->fences[i])
+			throttle->destroy(throttle->display, throttle->fences[i]);
 	memset(throttle, 0, sizeof(*throttle));
 }
 
+/* Each of llvmpipe's threads counts a fence up and then wakes those that wait. The fence is passed
+ * before the last of them has done so, and freed by then it would be written to (Mesa 22.3). So one
+ * is kept until the next has passed, which each thread comes to after it. */
 void throttle_count(struct throttle *throttle, uint32_t triangles)
 {
+	EGLSyncKHR *const fences = throttle->fences;
+
 	throttle->triangles += triangles;
 	if (!throttle->create || throttle->triangles < PART_TRIANGLES)
 		return;
-	const EGLSyncKHR before = throttle->fence;
+	const EGLSyncKHR next = throttle->create(throttle->display, EGL_SYNC_FENCE_KHR, NULL);
 	throttle->triangles = 0;
-	throttle->fence = throttle->create(throttle->display, EGL_SYNC_FENCE_KHR, NULL);
 	glFlush();
-	if (!before)
+	if (!next)
 		return;
-	throttle->wait(throttle->display, before, 0, EGL_FOREVER_KHR);
-	throttle->destroy(throttle->display, before);
+	if (fences[1])
+		throttle->wait(throttle->display, fences[1], 0, EGL_FOREVER_KHR);
+	if (fences[0])
+		throttle->destroy(throttle->display, fences[0]);
+	fences[0] = fences[1];
+	fences[1] = next;
 }

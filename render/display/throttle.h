@@ -14,9 +14,9 @@ struct throttle {
 	PFNEGLCREATESYNCKHRPROC create; /* NULL: nothing is throttled */
 	PFNEGLDESTROYSYNCKHRPROC destroy;
 	PFNEGLCLIENTWAITSYNCKHRPROC wait;
-	EGLDisplay display; /* borrowed */
-	EGLSyncKHR fence;   /* after the part before this one */
-	uint32_t triangles; /* of this part */
+	EGLDisplay display;   /* borrowed */
+	EGLSyncKHR fences[2]; /* after the two parts before this one, the older first */
+	uint32_t triangles;   /* of this part */
 };
 
 /* Looks at the current context, which must outlive it. */

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "render/display/context.h"
@@ -139,9 +140,9 @@ static void fences_are_there_for_the_processor_alone(void **state)
 {
 	struct world *world = *state;
 	CHECK(!world->throttle.create || context_is_software(eglGetCurrentDisplay()));
-	CHECK(!world->throttle.fence);
+	CHECK(!world->throttle.fences[1]);
 	draw(world, 8);
-	CHECK((world->throttle.create != NULL) == (world->throttle.fence != EGL_NO_SYNC_KHR));
+	CHECK((world->throttle.create != NULL) == (world->throttle.fences[1] != EGL_NO_SYNC_KHR));
 }
 
 static void without_fences_nothing_waits(void **state)
@@ -149,12 +150,67 @@ static void without_fences_nothing_waits(void **state)
 	struct world *world = *state;
 	throttle_finish(&world->throttle);
 	draw(world, 8);
-	CHECK(!world->throttle.fence);
+	CHECK(!world->throttle.fences[1]);
+}
+
+/* ---- the order of its calls */
+
+static char calls[64];
+
+static void note(char what, EGLSyncKHR fence)
+{
+	const size_t size = strlen(calls);
+
+	snprintf(calls + size, sizeof(calls) - size, "%c%d ", what, (int)(intptr_t)fence);
+}
+
+static EGLSyncKHR create_one(EGLDisplay display, EGLenum kind, const EGLint *with)
+{
+	static intptr_t last;
+
+	(void)display;
+	(void)kind;
+	(void)with;
+	note('+', (EGLSyncKHR)++last);
+	return (EGLSyncKHR)last;
+}
+
+static EGLint wait_for_one(EGLDisplay display, EGLSyncKHR fence, EGLint flags, EGLTimeKHR most)
+{
+	(void)display;
+	(void)flags;
+	CHECK(most == EGL_FOREVER_KHR);
+	note('=', fence);
+	return EGL_CONDITION_SATISFIED_KHR;
+}
+
+static EGLBoolean destroy_one(EGLDisplay display, EGLSyncKHR fence)
+{
+	(void)display;
+	note('-', fence);
+	return EGL_TRUE;
+}
+
+static void a_fence_stays_until_the_next_has_passed(void **state)
+{
+	struct throttle throttle = { .create = create_one,
+				     .destroy = destroy_one,
+				     .wait = wait_for_one };
+
+	(void)state;
+	for (int part = 0; part < 5; part++)
+		throttle_count(&throttle, DRAW_TRIANGLES);
+	CHECK(strcmp(calls, "+1 +2 =1 +3 =2 -1 +4 =3 -2 +5 =4 -3 ") == 0);
+	calls[0] = '\0';
+	throttle_finish(&throttle);
+	CHECK(strcmp(calls, "-4 -5 ") == 0);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(a_fence_stays_until_the_next_has_passed, set_up,
+						tear_down),
 		cmocka_unit_test_setup_teardown(only_two_parts_wait_in_memory, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(fences_are_there_for_the_processor_alone, set_up,
 						tear_down),
