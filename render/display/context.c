@@ -25,17 +25,6 @@ EGLContext context_create(EGLDisplay egl, EGLConfig config)
 					 : eglCreateContext(egl, config, EGL_NO_CONTEXT, plain);
 }
 
-bool context_is_software(EGLDisplay egl)
-{
-	const char *all = eglQueryString(egl, EGL_EXTENSIONS), *driver = NULL;
-	PFNEGLGETDISPLAYDRIVERNAMEPROC name_of =
-		(PFNEGLGETDISPLAYDRIVERNAMEPROC)eglGetProcAddress("eglGetDisplayDriverName");
-
-	if (all && strstr(all, "EGL_MESA_query_driver") && name_of)
-		driver = name_of(egl);
-	return driver && strstr(driver, "swrast"); /* "swrast", "kms_swrast" */
-}
-
 static PFNGLGETGRAPHICSRESETSTATUSEXTPROC reset_status(void)
 {
 	const char *name = NULL;

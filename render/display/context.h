@@ -10,9 +10,6 @@
 
 /* Returns a new GLES2 context, owned by the caller, or EGL_NO_CONTEXT like eglCreateContext. */
 EGLContext context_create(EGLDisplay egl, EGLConfig config);
-/* Returns whether the display's driver draws on the processor, with Mesa's llvmpipe or softpipe;
- * false also where EGL cannot tell. The display is initialized. */
-bool context_is_software(EGLDisplay egl);
 /* Returns whether the current context is lost; false also where the driver cannot tell. */
 bool context_is_lost(void);
 

@@ -12,7 +12,9 @@
 #include "base/log.h"
 #include "render/display/context.h"
 #include "render/display/display.h"
+#include "render/display/driver.h"
 #include "render/display/drm_panel.h"
+#include "render/display/fences.h"
 #include "render/display/gl.h"
 
 struct drm_display {
@@ -59,7 +61,7 @@ static EGLConfig choose_config(EGLDisplay egl)
 				  EGL_BLUE_SIZE,
 				  8,
 				  EGL_DEPTH_SIZE,
-				  context_is_software(egl) ? 0 : 24,
+				  driver_is_software(egl) ? 0 : 24,
 				  EGL_NONE };
 	EGLConfig configs[64];
 	EGLint count = 0, visual;
@@ -135,6 +137,7 @@ static void destroy(struct display *display)
 	if (!drm)
 		return;
 	if (drm->egl != EGL_NO_DISPLAY) {
+		fences_end();
 		eglMakeCurrent(drm->egl, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 		if (drm->egl_surface != EGL_NO_SURFACE)
 			eglDestroySurface(drm->egl, drm->egl_surface);
@@ -173,7 +176,7 @@ static int dispatch(struct display *display)
 static void begin(struct display *display)
 {
 	(void)display;
-	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the default framebuffer of the surface */
+	gl_bind_framebuffer(0); /* the default framebuffer of the surface */
 }
 
 static void forget_framebuffer(struct gbm_bo *bo, void *data)
@@ -216,6 +219,7 @@ static int present(struct display *display)
 	uint32_t fb;
 	int rc;
 
+	fences_add();
 	if (!eglSwapBuffers(drm->egl, drm->egl_surface))
 		return eglGetError() == EGL_CONTEXT_LOST ? -ENOTRECOVERABLE : -EIO;
 	drm->next = gbm_surface_lock_front_buffer(drm->surface);

@@ -53,7 +53,7 @@ static void begin(struct display *display)
 static int present(struct display *display)
 {
 	(void)display;
-	glFinish();
+	gl_finish();
 	return 0;
 }
 

@@ -121,7 +121,7 @@ static int dispatch(struct display *display)
 static void begin(struct display *display)
 {
 	(void)display;
-	glBindFramebuffer(GL_FRAMEBUFFER, 0); /* the default framebuffer of the window */
+	gl_bind_framebuffer(0); /* the default framebuffer of the window */
 }
 
 static int present(struct display *display)

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "render/display/fences.h"
 
 enum { PARTS_MAX = 16, NAME_BYTES = 128, INFO_BYTES = 4096 };
 
@@ -438,9 +439,21 @@ void gl_target_destroy(struct gl_target *target)
 	*target = (struct gl_target){ 0 };
 }
 
+void gl_bind_framebuffer(GLuint framebuffer)
+{
+	fences_add();
+	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+}
+
+void gl_finish(void)
+{
+	fences_add();
+	glFinish();
+}
+
 void gl_target_bind(const struct gl_target *target)
 {
-	glBindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
+	gl_bind_framebuffer(target->framebuffer);
 	glViewport(0, 0, target->width_px, target->height_px);
 }
 
@@ -468,6 +481,6 @@ int gl_target_read(const struct gl_target *target, uint8_t *rgba)
 
 void gl_place_bind(const struct gl_place *place, int width_px, int height_px)
 {
-	glBindFramebuffer(GL_FRAMEBUFFER, place->framebuffer);
+	gl_bind_framebuffer(place->framebuffer);
 	glViewport(place->x_px, place->y_px, width_px, height_px);
 }

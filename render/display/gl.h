@@ -99,6 +99,10 @@ struct gl_place {
 	int x_px, y_px;
 	bool has_depth; /* a depth buffer; without one, a model is drawn elsewhere and copied */
 };
+/* Bind a framebuffer, and wait until all is drawn, with a fence before (render/display/fences.h).
+ */
+void gl_bind_framebuffer(GLuint framebuffer);
+void gl_finish(void);
 /* Binds the framebuffer and sets the viewport to the picture. */
 void gl_place_bind(const struct gl_place *place, int width_px, int height_px);
 

@@ -11,6 +11,8 @@
 
 #include "base/log.h"
 #include "render/display/context.h"
+#include "render/display/driver.h"
+#include "render/display/fences.h"
 
 enum { DEVICES_MAX = 8 };
 
@@ -98,7 +100,7 @@ done:
 int headless_panel(const struct headless *headless, struct gl_target *out, int width_px,
 		   int height_px)
 {
-	return context_is_software(headless->display)
+	return driver_is_software(headless->display)
 		       ? gl_target_create_flat(out, width_px, height_px)
 		       : gl_target_create(out, width_px, height_px);
 }
@@ -107,6 +109,7 @@ void headless_destroy(struct headless *headless)
 {
 	if (!headless)
 		return;
+	fences_end();
 	eglMakeCurrent(headless->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 	eglDestroyContext(headless->display, headless->context);
 	/* EGL shares one display between all contexts of the process; terminating it here would end

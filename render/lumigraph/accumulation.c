@@ -124,6 +124,6 @@ void accumulation_let_go(struct accumulation *accumulation, const struct gl_plac
 		gl_copy_draw(accumulation->program, accumulation->sum.colour);
 		glFlush();
 	}
-	glFinish();
+	gl_finish();
 	glReleaseShaderCompiler(); /* not needed until the next scene */
 }

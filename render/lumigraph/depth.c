@@ -109,7 +109,7 @@ static int make_sheet_of(struct depth *depth, int at, int width_px, int height_p
 	if (rc < 0)
 		return rc;
 	glGenFramebuffers(1, &depth->framebuffer[at]);
-	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[at]);
+	gl_bind_framebuffer(depth->framebuffer[at]);
 	glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
 			       depth->sheet[at], 0);
 	const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
@@ -301,7 +301,7 @@ void depth_patch(const struct depth *depth, const float centre_m[3])
 static void write_square(const struct depth *depth, struct depth_place place)
 {
 	int side_px = depth->layout.face_px;
-	glBindFramebuffer(GL_FRAMEBUFFER, depth->framebuffer[place.sheet]);
+	gl_bind_framebuffer(depth->framebuffer[place.sheet]);
 	glViewport(place.column * side_px, place.row * side_px, side_px, side_px);
 	glDisable(GL_DEPTH_TEST);
 	glDisable(GL_DITHER); /* dithering would damage the packed bits */

@@ -10,7 +10,6 @@ int geometry_init(struct geometry *geometry, const struct hierarchy *hierarchy)
 {
 	memset(geometry, 0, sizeof(*geometry));
 	geometry->hierarchy = hierarchy;
-	throttle_init(&geometry->throttle);
 	size_t groups = hierarchy->group_count + 1;
 	geometry->patches = calloc(hierarchy->patch_count + 1, sizeof(*geometry->patches));
 	geometry->loaded = calloc(groups, 1);
@@ -49,7 +48,6 @@ void geometry_finish(struct geometry *geometry)
 	free(geometry->loaded);
 	free(geometry->group_bytes);
 	free(geometry->group_stamp);
-	throttle_finish(&geometry->throttle);
 	memset(geometry, 0, sizeof(*geometry));
 }
 

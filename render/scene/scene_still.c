@@ -76,7 +76,7 @@ static void begin(struct scene *scene, bool changed)
 
 static bool is_awaited(const struct scene *scene)
 {
-	glFinish(); /* or the driver would be told of all parts before the first is drawn */
+	gl_finish(); /* or the driver would be told of all parts before the first is drawn */
 	return scene->still.waits(scene->still.data);
 }
 

@@ -219,17 +219,17 @@ static void reads_public_keys(void **state)
 static long allocations, fails_at = -1; /* the fails_at-th from now on, from 0; -1: none */
 static bool fails_on;                   /* all later ones too */
 
+#ifdef __SANITIZE_ADDRESS__
+enum { CAN_FAIL = 0 };
+#else
+enum { CAN_FAIL = 1 };
+
 static bool fails(void)
 {
 	const long n = allocations++;
 
 	return fails_at >= 0 && (n == fails_at || (fails_on && n > fails_at));
 }
-
-#ifdef __SANITIZE_ADDRESS__
-enum { CAN_FAIL = 0 };
-#else
-enum { CAN_FAIL = 1 };
 
 void *__libc_malloc(size_t size);
 void *__libc_realloc(void *old, size_t size);

@@ -4,10 +4,9 @@
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
-#include "render/display/context.h"
+#include "render/display/driver.h"
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 #include "tests/check.h"
@@ -70,14 +69,12 @@ static int set_up(void **state)
 	    gl_target_create(&world.target, SIDE_PX, SIDE_PX) < 0 ||
 	    gl_program_build(&world.program, &source) < 0)
 		return -1;
-	throttle_init(&world.throttle);
 	return make_triangles(&world.vertices);
 }
 
 static int tear_down(void **state)
 {
 	struct world *world = *state;
-	throttle_finish(&world->throttle);
 	glDeleteProgram(world->program);
 	glDeleteBuffers(1, &world->vertices);
 	gl_target_destroy(&world->target);
@@ -124,7 +121,7 @@ static void forget_most(void)
 static void only_two_parts_wait_in_memory(void **state)
 {
 	struct world *world = *state;
-	if (!world->throttle.create)
+	if (!driver_is_software(eglGetCurrentDisplay()))
 		skip();
 	draw(world, 4); /* buffers, programs, threads */
 	forget_most();
@@ -136,85 +133,10 @@ static void only_two_parts_wait_in_memory(void **state)
 	CHECK(before > 0 && grown <= MOST_KIB);
 }
 
-static void fences_are_there_for_the_processor_alone(void **state)
-{
-	struct world *world = *state;
-	CHECK(!world->throttle.create || context_is_software(eglGetCurrentDisplay()));
-	CHECK(!world->throttle.fences[1]);
-	draw(world, 8);
-	CHECK((world->throttle.create != NULL) == (world->throttle.fences[1] != EGL_NO_SYNC_KHR));
-}
-
-static void without_fences_nothing_waits(void **state)
-{
-	struct world *world = *state;
-	throttle_finish(&world->throttle);
-	draw(world, 8);
-	CHECK(!world->throttle.fences[1]);
-}
-
-/* ---- the order of its calls */
-
-static char calls[64];
-
-static void note(char what, EGLSyncKHR fence)
-{
-	const size_t size = strlen(calls);
-
-	snprintf(calls + size, sizeof(calls) - size, "%c%d ", what, (int)(intptr_t)fence);
-}
-
-static EGLSyncKHR create_one(EGLDisplay display, EGLenum kind, const EGLint *with)
-{
-	static intptr_t last;
-
-	(void)display;
-	(void)kind;
-	(void)with;
-	note('+', (EGLSyncKHR)++last);
-	return (EGLSyncKHR)last;
-}
-
-static EGLint wait_for_one(EGLDisplay display, EGLSyncKHR fence, EGLint flags, EGLTimeKHR most)
-{
-	(void)display;
-	(void)flags;
-	CHECK(most == EGL_FOREVER_KHR);
-	note('=', fence);
-	return EGL_CONDITION_SATISFIED_KHR;
-}
-
-static EGLBoolean destroy_one(EGLDisplay display, EGLSyncKHR fence)
-{
-	(void)display;
-	note('-', fence);
-	return EGL_TRUE;
-}
-
-static void a_fence_stays_until_the_next_has_passed(void **state)
-{
-	struct throttle throttle = { .create = create_one,
-				     .destroy = destroy_one,
-				     .wait = wait_for_one };
-
-	(void)state;
-	for (int part = 0; part < 5; part++)
-		throttle_count(&throttle, DRAW_TRIANGLES);
-	CHECK(strcmp(calls, "+1 +2 =1 +3 =2 -1 +4 =3 -2 +5 =4 -3 ") == 0);
-	calls[0] = '\0';
-	throttle_finish(&throttle);
-	CHECK(strcmp(calls, "-4 -5 ") == 0);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(a_fence_stays_until_the_next_has_passed, set_up,
-						tear_down),
 		cmocka_unit_test_setup_teardown(only_two_parts_wait_in_memory, set_up, tear_down),
-		cmocka_unit_test_setup_teardown(fences_are_there_for_the_processor_alone, set_up,
-						tear_down),
-		cmocka_unit_test_setup_teardown(without_fences_nothing_waits, set_up, tear_down),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
