@@ -1,8 +1,6 @@
 /* Prints summaries of single files: recognises the form by its first bytes, decodes it and prints
  * its main figures. */
 #include "pipeline/release/inspect.h"
-#include "base/json_tree.h"
-#include "geometry/substance.h"
 
 #include <cjson/cJSON.h>
 #include <errno.h>
@@ -12,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "format/hierarchy.h"
 #include "format/label.h"
 #include "format/metadata.h"
@@ -24,6 +23,7 @@
 #include "format/stream.h"
 #include "format/stream_page.h"
 #include "format/tile.h"
+#include "geometry/substance.h"
 #include "storage/info.h"
 
 enum { CHILDREN_SHOWN = 8 };
