@@ -204,6 +204,9 @@ int sound_import(struct buffer *out, struct bytes file, struct diagnostics *diag
 	if (rc == -EFBIG)
 		diagnostics_add(diagnostics, rc, NULL, 0,
 				"the recording is longer than ten minutes: divide the text");
+	else if (rc == -ENOMEM)
+		diagnostics_add(diagnostics, rc, NULL, 0,
+				"the recording needs more memory than there is: try again");
 	else if (rc < 0)
 		diagnostics_add(diagnostics, rc, NULL, 0,
 				"this is not a complete Ogg Opus file with one or two channels: "

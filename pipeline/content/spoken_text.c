@@ -56,6 +56,9 @@ static uint32_t measure(struct draft *draft, const char *file, struct bytes byte
 	if (rc == -EFBIG)
 		diagnostics_add(draft->diagnostics, -EINVAL, file, 0,
 				"is longer than ten minutes: divide the text");
+	else if (rc == -ENOMEM)
+		diagnostics_add(draft->diagnostics, rc, file, 0,
+				"cannot be read: no memory is left");
 	else if (rc < 0)
 		diagnostics_add(draft->diagnostics, -EINVAL, file, 0,
 				"is not a complete Ogg Opus file with one or two channels: encode "

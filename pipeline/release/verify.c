@@ -146,8 +146,9 @@ static int read_locator(struct verify_walk *walk)
 	} else {
 		rc = locator_decode(&walk->locator, buffer_bytes(&file));
 		if (rc < 0)
-			diagnostics_add(&walk->report->diagnostics, rc, name, 0,
-					"damaged, or not a locator");
+			diagnostics_add(&walk->report->diagnostics, rc, name, 0, "%s",
+					rc == -ENOMEM ? "no memory is left"
+						      : "damaged, or not a locator");
 	}
 	walk->report->locator_bytes = (uint32_t)file.size;
 	walk->report->pack_count = walk->locator.pack_count;
