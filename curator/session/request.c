@@ -289,10 +289,10 @@ int request_parse(struct request *out, const char *text, size_t bytes,
 	snprintf(problem, REQUEST_PROBLEM_BYTES, "is not an object of JSON");
 	if (bytes <= REQUEST_BYTES_MAX)
 		rc = json_parse(&root, (struct bytes){ (const uint8_t *)text, bytes });
-	if (rc == -EBADMSG)
-		rc = -EINVAL;
 	if (cJSON_IsObject(root))
 		rc = read_kind(&(struct parse){ root, problem }, out);
+	else if (rc != -ENOMEM)
+		rc = -EINVAL;
 	cJSON_Delete(root);
 	if (rc == -ENOMEM)
 		snprintf(problem, REQUEST_PROBLEM_BYTES, "no memory is left");
