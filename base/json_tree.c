@@ -74,6 +74,20 @@ bool json_append(cJSON *array, cJSON *item)
 	return false;
 }
 
+/* cJSON's own replace functions add nothing that is missing. */
+bool json_set(cJSON *object, const char *key, cJSON *item)
+{
+	if (!item)
+		return false;
+	if (cJSON_GetObjectItemCaseSensitive(object, key)) {
+		if (cJSON_ReplaceItemInObjectCaseSensitive(object, key, item))
+			return true;
+		cJSON_Delete(item);
+		return false;
+	}
+	return json_add(object, key, item);
+}
+
 static char *whole(char *text)
 {
 	if (lacked) {
@@ -92,4 +106,16 @@ char *json_line(const cJSON *json)
 char *json_indented(const cJSON *json)
 {
 	return whole(cJSON_Print(json));
+}
+
+int json_print(const cJSON *json, struct buffer *out)
+{
+	char *text = json_indented(json);
+
+	if (!text)
+		return -ENOMEM;
+	buffer_put_text(out, text);
+	buffer_put_u8(out, '\n');
+	free(text);
+	return out->error;
 }

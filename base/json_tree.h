@@ -13,7 +13,7 @@ struct cJSON;
  * failure. -EBADMSG: it is not JSON; -ENOMEM. */
 must_check int json_parse(struct cJSON **out, struct bytes text);
 /* As json_parse; *end is set to the first byte behind the value or, on failure, to about where it
- * cannot go on. NULL: not wanted. */
+ * cannot go on. NULL: not wanted; a text without bytes sets nothing. */
 must_check int json_parse_to(struct cJSON **out, struct bytes text, const char **end);
 /* As json_parse, for one object with nothing but white space behind it. */
 must_check int json_parse_object(struct cJSON **out, struct bytes text);
@@ -23,9 +23,15 @@ must_check int json_parse_object(struct cJSON **out, struct bytes text);
 bool json_add(struct cJSON *object, const char *key, struct cJSON *item);
 bool json_append(struct cJSON *array, struct cJSON *item);
 
+/* As json_add, in the place of a member of that name where there is one. */
+must_check bool json_set(struct cJSON *object, const char *key, struct cJSON *item);
+
 /* Returns the text of a tree, for free: in one line, or indented for people. NULL: memory was
  * lacking, now or since the last call on this thread, so that the tree may not be whole. */
 must_check char *json_line(const struct cJSON *json);
 must_check char *json_indented(const struct cJSON *json);
+/* Appends a tree as the text of a file: indented, with an end of line. -ENOMEM, as above; -EFBIG.
+ */
+must_check int json_print(const struct cJSON *json, struct buffer *out);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/json_tree.h"
 #include "curator/pages/content_save.h"
+#include "curator/store/json_document.h"
 #include "curator/store/parts_file.h"
 
 static void copy(cJSON *to, const cJSON *from, const char *key)
@@ -117,13 +118,11 @@ static int add_document(void *user, const char *name, const char *tag)
 static void add_tours(struct site *site, cJSON *rows)
 {
 	char tag[DOCUMENT_TAG_BYTES];
-	struct buffer text;
-	cJSON *root = NULL;
 	const cJSON *tour;
+	cJSON *root;
 
-	buffer_init(&text, PARTS_FILE_BYTES_MAX);
-	if (documents_read(site->documents, "tours.json", &text, tag, NULL) < 0 ||
-	    json_parse(&root, buffer_bytes(&text)) < 0)
+	if (json_document_read(&root, site->documents, "tours.json", PARTS_FILE_BYTES_MAX, tag,
+			       NULL) < 0)
 		root = NULL;
 	cJSON_ArrayForEach(tour, cJSON_GetObjectItemCaseSensitive(root, "tours"))
 	{
@@ -134,7 +133,6 @@ static void add_tours(struct site *site, cJSON *rows)
 		json_append(rows, row);
 	}
 	cJSON_Delete(root);
-	buffer_finish(&text);
 }
 
 static int fill(struct site *site, cJSON *root, struct diagnostics *diagnostics)

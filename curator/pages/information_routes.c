@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_tree.h"
 #include "curator/pages/content_save.h"
 #include "curator/pages/information_list.h"
 #include "curator/pages/part_change.h"

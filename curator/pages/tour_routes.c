@@ -10,47 +10,18 @@
 #include "curator/pages/save_answer.h"
 #include "curator/pages/tour_flight.h"
 #include "curator/store/documents_versions.h"
+#include "curator/store/json_document.h"
 #include "curator/store/parts_file.h"
 
 #define TOURS_FILE "tours.json"
 
 enum { TOURS_BYTES_MAX = 1 << 20 };
 
-static const char no_memory[] = "cannot be read: no memory is left";
-
-static int parse(cJSON **out, struct bytes text, struct diagnostics *diagnostics)
-{
-	int rc = json_parse(out, text);
-
-	if (rc == -ENOMEM)
-		return diagnostics_add(diagnostics, rc, TOURS_FILE, 0, "%s", no_memory);
-	if (cJSON_IsObject(*out))
-		return 0;
-	cJSON_Delete(*out);
-	*out = NULL;
-	return diagnostics_add(diagnostics, -EINVAL, TOURS_FILE, 0,
-			       "is not valid: 'gopura-content build' names the line");
-}
-
-/* Reads the file as a tree; an empty one if there is none, with "" as tag. *out is owned by the
- * caller; NULL on failure, with a diagnostic. */
-static int read_tours(struct site *site, cJSON **out, char tag[DOCUMENT_TAG_BYTES],
+static int read_tours(cJSON **out, const struct site *site, char tag[DOCUMENT_TAG_BYTES],
 		      struct diagnostics *diagnostics)
 {
-	struct buffer text;
-	int rc;
-
-	*out = NULL;
-	buffer_init(&text, TOURS_BYTES_MAX);
-	rc = documents_read(site->documents, TOURS_FILE, &text, tag, diagnostics);
-	if (rc == 0)
-		rc = parse(out, buffer_bytes(&text), diagnostics);
-	else if (rc == -ENOENT && (*out = cJSON_CreateObject()))
-		rc = 0;
-	else if (rc == -ENOENT)
-		rc = diagnostics_add(diagnostics, -ENOMEM, TOURS_FILE, 0, "%s", no_memory);
-	buffer_finish(&text);
-	return rc;
+	return json_document_read(out, site->documents, TOURS_FILE, TOURS_BYTES_MAX, tag,
+				  diagnostics);
 }
 
 static cJSON *tours_json(const cJSON *root, const char *tag)
@@ -69,7 +40,7 @@ static void get_tours(void *user, const struct api_request *request, struct api_
 	struct diagnostics diagnostics = { 0 };
 	char tag[DOCUMENT_TAG_BYTES];
 	cJSON *root;
-	int rc = read_tours(user, &root, tag, &diagnostics);
+	int rc = read_tours(&root, user, tag, &diagnostics);
 
 	(void)request;
 	if (rc < 0)
@@ -162,7 +133,7 @@ static void save_tours(struct tours_save *save, cJSON *tours)
 	struct document_change change = { .name = TOURS_FILE, .base = save->base };
 	char tag[DOCUMENT_TAG_BYTES];
 	cJSON *root, *mine = NULL;
-	int rc = read_tours(save->site, &root, tag, &problems);
+	int rc = read_tours(&root, save->site, tag, &problems);
 
 	if (rc == 0) {
 		mine = cJSON_Duplicate(root, true);

@@ -26,10 +26,4 @@ void parts_file_finish(struct parts_file *parts); /* NULL and zeroed are fine */
 struct cJSON *parts_file_list(const struct parts_file *parts);
 /* Returns the first part of that id, borrowed, or NULL. */
 struct cJSON *parts_file_find(const struct parts_file *parts, const char *id);
-/* Appends a tree as the text of such a file. -ENOMEM, -EFBIG. */
-must_check int json_print(const struct cJSON *json, struct buffer *out);
-
-/* Sets a member of an object, whether it is there or not. item is taken. false: no memory. */
-must_check bool json_set(struct cJSON *object, const char *key, struct cJSON *item);
-
 #endif

@@ -326,7 +326,6 @@ static int write_json(struct annotations *out, struct draft *draft, const cJSON 
 {
 	struct exporter exporter = { .draft = draft };
 	cJSON *made = NULL;
-	char *text;
 	int rc = 0;
 
 	if (options->manifest_base)
@@ -334,16 +333,8 @@ static int write_json(struct annotations *out, struct draft *draft, const cJSON 
 					   options->manifest_model);
 	else
 		made = make_collection(&exporter, json, tours);
-	text = made ? json_indented(made) : NULL;
-	if (rc == 0 && !text)
-		rc = -ENOMEM;
-
-	if (text) {
-		buffer_put_text(&out->json, text);
-		buffer_put_u8(&out->json, '\n');
-		rc = out->json.error;
-	}
-	cJSON_free(text);
+	if (rc == 0)
+		rc = made ? json_print(made, &out->json) : -ENOMEM;
 	cJSON_Delete(made);
 	out->count = draft->part_count;
 	return rc;
