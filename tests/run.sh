@@ -14,7 +14,8 @@ logs=$PWD/build/test-logs
 jobs=$(nproc)
 # A small quarantine of freed memory still finds its uses, and saves half of the kernel's time, which went into fresh
 # pages and into copying their tables at each fork.
-# Without intercept_tls_get_addr=0 the leak checker takes garbage for the thread-local memory of Mesa's libraries, and crashes.
+# Without intercept_tls_get_addr=0 the leak checker takes garbage for the thread-local memory of Mesa's libraries, and
+# crashes.
 export ASAN_OPTIONS=detect_leaks=1:abort_on_error=0:quarantine_size_mb=16:intercept_tls_get_addr=0 UBSAN_OPTIONS=print_stacktrace=1
 # The file lists third-party libraries that keep small one-time allocations, and none of our own code.
 export LSAN_OPTIONS=suppressions=$PWD/tests/lsan.supp:print_suppressions=0

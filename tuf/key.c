@@ -129,7 +129,7 @@ static bool lacked_memory(void)
 	return lacked;
 }
 
-/* The same as judge, for the two kinds that OpenSSL has. */
+/* judge, for the two kinds of keys that OpenSSL verifies. */
 static int judge_pem(const char *public, enum scheme scheme, struct bytes message,
 		     const struct signature *signature, struct tuf_key_name *name)
 {
@@ -159,7 +159,8 @@ static int judge(const cJSON *key, struct bytes message, const struct signature 
 		return read_ed25519(public, raw, name) &&
 		       (!signature || verify_ed25519(raw, message, signature));
 	ok = judge_pem(public, scheme, message, signature, name);
-	/* OpenSSL does not note every lack of memory; one that lasts, the next try begins with. */
+	/* OpenSSL does not note every lack of memory. One that is over by now does not fail again;
+	 * one that lasts fails the first allocation, which judge_pem sees by itself. */
 	return ok == 0 ? judge_pem(public, scheme, message, signature, name) : ok;
 }
 

@@ -48,7 +48,8 @@ static bool is_replaced(const struct role_keys *old, const struct role_keys *nex
 	return kept_count(old, next) < next->threshold;
 }
 
-static void clear_floors(struct trust *trust, const struct trust_root *old, bool is_valid)
+static void clear_floors(struct trust *trust, const struct trust_root *old,
+			 bool remembered_is_valid)
 {
 	const struct role_keys *was = old->roles, *now = trust->root.roles;
 	const bool stamps_withdrawn = is_withdrawn(&was[META_TIMESTAMP], &now[META_TIMESTAMP]);
@@ -59,7 +60,7 @@ static void clear_floors(struct trust *trust, const struct trust_root *old, bool
 		trust->time_floor_s = 0;
 	if (is_replaced(&was[META_TIMESTAMP], &now[META_TIMESTAMP]) ||
 	    is_replaced(&was[META_RELEASE], &now[META_RELEASE]) ||
-	    (stamps_withdrawn && releases_withdrawn && !is_valid))
+	    (stamps_withdrawn && releases_withdrawn && !remembered_is_valid))
 		trust->sequence_floor = 0;
 }
 
@@ -68,18 +69,18 @@ int trust_root(struct trust *trust, struct bytes file, struct bytes remembered, 
 	const struct trust_root old = trust->root;
 	struct trust_root next = trust->root;
 	struct release release;
-	int rc, valid;
+	int rc, decoded;
 
 	if (!trust->trusted)
 		return refuse(-ENOKEY, why, "no trust root: start once with --trust root/1.json");
 	rc = trust_root_next(&next, file, why);
 	if (rc < 0)
 		return rc;
-	valid = release_decode(&release, &next, remembered, NULL);
-	if (valid == -ENOMEM)
-		return refuse(valid, why, "no memory is left");
+	decoded = release_decode(&release, &next, remembered, NULL);
+	if (decoded == -ENOMEM)
+		return refuse(decoded, why, "no memory is left");
 	trust->root = next;
-	clear_floors(trust, &old, valid == 0);
+	clear_floors(trust, &old, decoded == 0);
 	return 0;
 }
 

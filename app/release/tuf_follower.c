@@ -375,12 +375,12 @@ static int keep_root(struct tuf_follower *follower, struct bytes root)
 	bool withdrawn[TUF_TYPES] = { false };
 	struct tuf_file file = { 0 };
 	const char *why;
-	int rc = tuf_file_parse(&file, root, TUF_ROOT, &why), is;
+	int rc = tuf_file_parse(&file, root, TUF_ROOT, &why);
 
 	for (int type = TUF_TIMESTAMP; rc == 0 && type < TUF_TYPES; type++) {
-		is = is_withdrawn(follower, &file, (enum tuf_type)type);
-		withdrawn[type] = is > 0;
-		rc = is < 0 ? is : 0;
+		rc = is_withdrawn(follower, &file, (enum tuf_type)type);
+		withdrawn[type] = rc > 0;
+		rc = rc < 0 ? rc : 0;
 	}
 	tuf_file_finish(&file);
 	if (rc == 0)

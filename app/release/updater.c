@@ -146,7 +146,7 @@ static int read_state(struct updater *updater, struct state *state)
 		updater->shown = place_of(&release);
 		buffer_put(&updater->shown_file, release.file.data, release.file.size);
 		if (updater->shown_file.error)
-			return updater->shown_file.error; /* whose floor is it? */
+			return updater->shown_file.error; /* a root would clear its floor */
 	}
 	if (state_previous(state, &release) == 0)
 		updater->before = place_of(&release);

@@ -184,19 +184,20 @@ static int check_release(const struct tuf_folder *folder, const struct delegatio
 	const cJSON *keys_before = member(delegations, "keys");
 	struct tuf_file file;
 	uint32_t version;
-	int rc = tuf_folder_read_role(folder, options->role, &file, &version), was, is = 0;
+	int rc = tuf_folder_read_role(folder, options->role, &file, &version);
+	int signed_before, signed_after = 0;
 
 	if (rc < 0)
 		return rc;
-	was = file.json ? is_signed(&file, keys_before, before) : 0;
-	if (was > 0)
-		is = is_signed(&file, keys, role);
+	signed_before = file.json ? is_signed(&file, keys_before, before) : 0;
+	if (signed_before > 0)
+		signed_after = is_signed(&file, keys, role);
 	tuf_file_finish(&file);
-	if (was < 0 || is < 0) {
+	if (signed_before < 0 || signed_after < 0) {
 		log_error("pipeline", "%s: %s", options->role, strerror(ENOMEM));
 		return -ENOMEM;
 	}
-	if (was == 0 || is > 0)
+	if (signed_before == 0 || signed_after > 0)
 		return 0;
 	if (options->invalidate) {
 		log_warn("pipeline",

@@ -1,4 +1,4 @@
-/* What draws. */
+/* What an EGL display draws with. */
 #ifndef GOPURA_RENDER_DISPLAY_DRIVER_H
 #define GOPURA_RENDER_DISPLAY_DRIVER_H
 
