@@ -4,12 +4,13 @@
 #include <cjson/cJSON.h>
 #include <errno.h>
 #include <openssl/bio.h>
-#include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <sodium.h>
 #include <string.h>
+
+#include "tuf/openssl_memory.h"
 
 enum {
 	SIGNATURE_BYTES_MAX = 1024, /* of RSA with 8192 bits */
@@ -118,17 +119,6 @@ static enum scheme scheme_of(const cJSON *key)
 	return SCHEME_NONE;
 }
 
-/* Returns whether a lack of memory is among the errors that OpenSSL has noted, and clears them. */
-static bool lacked_memory(void)
-{
-	unsigned long error;
-	bool lacked = false;
-
-	while ((error = ERR_get_error()))
-		lacked |= ERR_GET_REASON(error) == ERR_R_MALLOC_FAILURE;
-	return lacked;
-}
-
 /* judge, for the two kinds of keys that OpenSSL verifies. */
 static int judge_pem(const char *public, enum scheme scheme, struct bytes message,
 		     const struct signature *signature, struct tuf_key_name *name)
@@ -141,7 +131,7 @@ static int judge_pem(const char *public, enum scheme scheme, struct bytes messag
 
 	EVP_PKEY_free(key);
 	BIO_free(bio);
-	return (lacked_memory() && !ok) || !bio ? -ENOMEM : ok;
+	return (openssl_lacked_memory() && !ok) || !bio ? -ENOMEM : ok;
 }
 
 /* Names the key and, with a signature, verifies it. */
@@ -159,8 +149,7 @@ static int judge(const cJSON *key, struct bytes message, const struct signature 
 		return read_ed25519(public, raw, name) &&
 		       (!signature || verify_ed25519(raw, message, signature));
 	ok = judge_pem(public, scheme, message, signature, name);
-	/* OpenSSL does not note every lack of memory. One that is over by now does not fail again;
-	 * one that lasts fails the first allocation, which judge_pem sees by itself. */
+	/* once more: tuf/openssl_memory.h */
 	return ok == 0 ? judge_pem(public, scheme, message, signature, name) : ok;
 }
 

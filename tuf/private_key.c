@@ -3,11 +3,12 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <string.h>
+
+#include "tuf/openssl_memory.h"
 
 enum { SIGNATURE_BYTES_MAX = 1024, RSA_BITS_LEAST = 2048 };
 
@@ -59,15 +60,17 @@ static bool sign(EVP_PKEY *key, struct bytes message, uint8_t *out, size_t *size
 	if (ok && kind == EVP_PKEY_RSA)
 		ok = EVP_PKEY_CTX_set_rsa_padding(padding, RSA_PKCS1_PSS_PADDING) == 1 &&
 		     EVP_PKEY_CTX_set_rsa_pss_saltlen(padding, RSA_PSS_SALTLEN_DIGEST) == 1;
-	ok = ok && EVP_DigestSign(context, out, size, message.data, message.size) == 1;
+	/* Without memory OpenSSL 3.0 reports success for RSA, with a size of -1. */
+	ok = ok && EVP_DigestSign(context, out, size, message.data, message.size) == 1 &&
+	     *size <= SIGNATURE_BYTES_MAX;
 	EVP_MD_CTX_free(context);
 	return ok;
 }
 
-int tuf_private_sign(struct buffer *out, struct bytes pem, struct bytes message)
+/* tuf_private_sign, once. */
+static int try_to_sign(uint8_t signature[SIGNATURE_BYTES_MAX], size_t *size, struct bytes pem,
+		       struct bytes message)
 {
-	uint8_t signature[SIGNATURE_BYTES_MAX];
-	size_t size = sizeof(signature);
 	EVP_PKEY *key = read_key(pem);
 	int rc = 0;
 
@@ -75,10 +78,22 @@ int tuf_private_sign(struct buffer *out, struct bytes pem, struct bytes message)
 		rc = -EBADMSG;
 	else if (!is_usable(key))
 		rc = -EOPNOTSUPP;
-	else if (!sign(key, message, signature, &size))
+	else if (!sign(key, message, signature, size))
 		rc = -EIO;
 	EVP_PKEY_free(key);
-	ERR_clear_error();
+	return openssl_lacked_memory() && rc < 0 ? -ENOMEM : rc;
+}
+
+int tuf_private_sign(struct buffer *out, struct bytes pem, struct bytes message)
+{
+	uint8_t signature[SIGNATURE_BYTES_MAX];
+	size_t size = sizeof(signature);
+	int rc = try_to_sign(signature, &size, pem, message);
+
+	if (rc < 0 && rc != -ENOMEM) { /* once more: tuf/openssl_memory.h */
+		size = sizeof(signature);
+		rc = try_to_sign(signature, &size, pem, message);
+	}
 	if (rc == 0)
 		buffer_put(out, signature, size);
 	return rc < 0 ? rc : out->error;

@@ -12,6 +12,7 @@
 
 #include "base/json_tree.h"
 #include "tuf/canonical.h"
+#include "tuf/openssl_memory.h"
 
 enum { ENTRY_BYTES_MAX = 16 << 10 };
 
@@ -20,14 +21,20 @@ static bool has(struct bytes file, const char *text)
 	return file.size > 0 && memmem(file.data, file.size, text, strlen(text));
 }
 
-static EVP_PKEY *read_pem(struct bytes file)
+static int try_to_read_pem(EVP_PKEY **out, struct bytes file)
 {
 	BIO *bio = file.size <= INT_MAX ? BIO_new_mem_buf(file.data, (int)file.size) : NULL;
-	EVP_PKEY *key = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
 
+	*out = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
 	BIO_free(bio);
-	ERR_clear_error();
-	return key;
+	return openssl_lacked_memory() && !*out ? -ENOMEM : *out ? 0 : -EBADMSG;
+}
+
+static int read_pem(EVP_PKEY **out, struct bytes file)
+{
+	const int rc = try_to_read_pem(out, file);
+
+	return rc == -EBADMSG ? try_to_read_pem(out, file) : rc; /* tuf/openssl_memory.h */
 }
 
 /* Writes the key as one text, whatever spaces and comments the file had. */
@@ -75,11 +82,11 @@ static cJSON *entry_of_ed25519(EVP_PKEY *key)
 /* Which curves and lengths may be used, tuf_key_name_of says afterwards. */
 static int take_pem(cJSON **out, struct bytes file)
 {
-	EVP_PKEY *key = read_pem(file);
+	EVP_PKEY *key;
+	int rc = read_pem(&key, file);
 	const int kind = key ? EVP_PKEY_get_base_id(key) : 0;
 	const bool rsa = kind == EVP_PKEY_RSA;
 	struct buffer text;
-	int rc = key ? 0 : -EBADMSG;
 
 	buffer_init(&text, ENTRY_BYTES_MAX);
 	if (key && kind != EVP_PKEY_ED25519 && kind != EVP_PKEY_EC && !rsa)

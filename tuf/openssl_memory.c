@@ -1,0 +1,13 @@
+#include "tuf/openssl_memory.h"
+
+#include <openssl/err.h>
+
+bool openssl_lacked_memory(void)
+{
+	unsigned long error;
+	bool lacked = false;
+
+	while ((error = ERR_get_error()))
+		lacked |= ERR_GET_REASON(error) == ERR_R_MALLOC_FAILURE;
+	return lacked;
+}
