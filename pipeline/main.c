@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/compiler.h"
+#include "base/crash.h"
 #include "pipeline/commands.h"
 
 static const struct command commands[] = {
@@ -42,6 +43,7 @@ int main(int argc, char **argv)
 {
 	const char *name = argc > 1 ? argv[1] : "";
 
+	crash_tell("pipeline");
 	for (const struct command *c = commands; c->name; c++)
 		if (strcmp(name, c->name) == 0)
 			return c->run(argc - 1, argv + 1);
