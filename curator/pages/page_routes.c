@@ -26,6 +26,7 @@ struct page_save {
 	struct bytes html;             /* borrowed; data NULL: the page is removed */
 	struct buffer merged;
 	bool is_merged;
+	char sent[DOCUMENT_TAG_BYTES]; /* if it is merged: of the text that came */
 };
 
 static void name_page(const struct api_request *request, char name[DOCUMENT_NAME_BYTES])
@@ -66,20 +67,20 @@ static void get_page(void *user, const struct api_request *request, struct api_r
 
 /* ---- saving */
 
-/* Both texts where they overlap: the browser shows them, and somebody decides. */
-static void answer_overlap(struct page_save *save, const char *tag)
+/* Somebody decides in the browser, which gets the text to decide on, and the tag of what is there
+ * now: from that the next save begins. */
+static void answer_conflict(struct page_save *save, struct bytes html, const char *tag,
+			    const char *message)
 {
-	cJSON *json = page_json(buffer_bytes(&save->merged), tag);
+	cJSON *json = page_json(html, tag);
 
-	cJSON_AddStringToObject(json, "message",
-				"somebody else has changed the same lines meanwhile: both texts "
-				"are below; keep what is right, and save again");
+	cJSON_AddStringToObject(json, "message", message);
 	save->response->status = 409;
 	api_send_json(save->response, json);
 }
 
-/* Brings the text up to what is there now. Returns 0, or -ESTALE with an answer. */
-static int meet_others(struct page_save *save, const char *now)
+/* Brings the text up to what is there now, theirs. Returns 0, or 1 with an answer. */
+static int meet_others(struct page_save *save, struct bytes theirs, const char *now)
 {
 	struct diagnostics diagnostics = { 0 };
 	char tag[DOCUMENT_TAG_BYTES];
@@ -89,21 +90,30 @@ static int meet_others(struct page_save *save, const char *now)
 	if (strcmp(save->base, now) == 0)
 		return 0;
 	if (!*now || !save->html.data) {
-		api_fail(save->response, 409,
-			 *now ? "somebody else has changed this page meanwhile: look at it first"
-			      : "somebody else has removed this page meanwhile: save again to "
-				"bring it back");
-		return -ESTALE;
+		answer_conflict(save, theirs, now,
+				*now ? "somebody else has changed this page meanwhile: look at it, "
+				       "and remove it again if it is to go"
+				     : "somebody else has removed this page meanwhile: save again "
+				       "to bring it back");
+		return 1;
 	}
 	rc = documents_merge(save->site->documents, save->name, save->base, save->html,
 			     &save->merged, &is_clean, tag, &diagnostics);
 	if (rc < 0) {
 		api_fail_with(save->response, rc, &diagnostics);
-		return -ESTALE;
+		return 1;
 	}
 	if (!is_clean) {
-		answer_overlap(save, tag);
-		return -ESTALE;
+		answer_conflict(save, buffer_bytes(&save->merged), tag,
+				"somebody else has changed the same lines meanwhile: both texts "
+				"are below; keep what is right, and save again");
+		return 1;
+	}
+	rc = documents_keep(save->site->documents, save->name, save->html, save->sent,
+			    &diagnostics);
+	if (rc < 0) {
+		api_fail_with(save->response, rc, &diagnostics);
+		return 1;
 	}
 	save->html = buffer_bytes(&save->merged);
 	save->is_merged = true;
@@ -185,6 +195,8 @@ static void answer_saved(struct page_save *save, const char *tag)
 	cJSON *json = page_json(save->is_merged ? save->html : (struct bytes){ 0 }, tag);
 
 	cJSON_AddBoolToObject(json, "merged", save->is_merged);
+	if (save->is_merged)
+		cJSON_AddStringToObject(json, "sent", save->sent);
 	if (content_check(save->site, NULL, 0, &found) == 0)
 		json_add(json, "problems", content_problems(&found, save->name));
 	diagnostics_finish(&found);
@@ -215,15 +227,17 @@ static void save_page(struct page_save *save, const struct parts_file *parts)
 	}
 	buffer_init(&now, HTML_BYTES_MAX);
 	rc = documents_read(save->site->documents, save->name, &now, tag, &problems);
-	buffer_finish(&now);
-	if (rc == 0 || rc == -ENOENT) {
-		if (meet_others(save, tag) < 0)
-			return;
-		rc = write_page(save, parts, part, tag, &problems);
+	if (rc == 0 || (rc == -ENOENT && save->html.data)) {
+		rc = meet_others(save, buffer_bytes(&now), tag);
+		if (rc == 0)
+			rc = write_page(save, parts, part, tag, &problems);
+	} else if (rc == -ENOENT) {
+		rc = 0; /* a removal whose answer was lost is asked for again */
 	}
+	buffer_finish(&now);
 	if (rc < 0)
 		save_answer_fail(save->response, rc, &problems);
-	else
+	else if (rc == 0)
 		answer_saved(save, tag);
 	diagnostics_finish(&problems);
 }

@@ -43,6 +43,7 @@
 	FILE(part_list, "/part_list.js", "part_list.js", SCRIPT, true)                             \
 	FILE(pictures, "/pictures.js", "pictures.js", SCRIPT, true)                                \
 	FILE(preview, "/preview.js", "preview.js", SCRIPT, true)                                   \
+	FILE(problems, "/problems.js", "problems.js", SCRIPT, true)                                \
 	FILE(tours, "/tours", "tours.html", HTML, false)                                           \
 	FILE(tours_script, "/tours.js", "tours.js", SCRIPT, true)                                  \
 	FILE(documents, "/documents.js", "documents.js", SCRIPT, true)                             \

@@ -69,3 +69,14 @@ int documents_merge(struct documents *documents, const char *name, const char *b
 					"merged")
 		      : 0;
 }
+
+int documents_keep(struct documents *documents, const char *name, struct bytes text,
+		   char tag[DOCUMENT_TAG_BYTES], struct diagnostics *diagnostics)
+{
+	int rc;
+
+	documents_lock(documents);
+	rc = history_put(documents->history, text, tag);
+	documents_unlock(documents);
+	return documents_report(diagnostics, rc, name);
+}

@@ -11,6 +11,10 @@ must_check int documents_merge(struct documents *documents, const char *name, co
 			       struct bytes mine, struct buffer *out, bool *is_clean,
 			       char tag[DOCUMENT_TAG_BYTES], struct diagnostics *diagnostics);
 
+/* Keeps a text that is no version, so that what is written after it can be merged as from there. */
+must_check int documents_keep(struct documents *documents, const char *name, struct bytes text,
+			      char tag[DOCUMENT_TAG_BYTES], struct diagnostics *diagnostics);
+
 /* Lists the versions of a document, the newest first; of one that was removed too. */
 must_check int documents_versions(struct documents *documents, const char *name,
 				  struct history_version *out, uint32_t max, uint32_t *count,

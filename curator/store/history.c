@@ -31,7 +31,12 @@ static int from_git(int code, const char *doing)
 	log_error("curator", "history: %s: %s", doing, error ? error->message : "failed");
 	if (error && error->klass == GIT_ERROR_NOMEMORY)
 		return -ENOMEM;
-	return error && error->klass == GIT_ERROR_OS ? -EIO : -EBADMSG;
+	/* Of what the system said, libgit2 keeps the words alone. */
+	if (error && error->klass == GIT_ERROR_OS)
+		return strstr(error->message, strerror(ENOSPC))   ? -ENOSPC
+		       : strstr(error->message, strerror(EDQUOT)) ? -ENOSPC
+								  : -EIO;
+	return -EBADMSG;
 }
 
 static bool parse_id(git_oid *out, const char *id)

@@ -4,6 +4,7 @@ import { pictureAddress } from "./clean.js";
 import { pickPicture } from "./pictures.js";
 
 const panel = document.getElementById("about");
+let shownOf = ""; // the part and language
 const CREDITS = [["creator", "Creator", "who made the part, or wrote about it"], ["contributor", "Contributor", "who helped"], ["publisher", "Publisher", "the museum"],
   ["date", "Date", ""], ["source", "Source", "after what it was written"], ["rights", "Rights", "licence or owner"], ["subject", "Subjects", "for the search"], ["coverage", "Coverage", "place and period"],
   ["relation", "Relation", "to other objects"]];
@@ -17,12 +18,28 @@ function field(part, common, language, [element, label, help], set) {
   wrap.append(byLanguage ? `${label} (${language})` : label);
   small.textContent = help;
   area.rows = 1;
-  area.value = old;
+  area.defaultValue = old;
   area.readOnly = !may("editor");
   area.placeholder = !value && all ? textOf(typeof all === "object" && !Array.isArray(all) ? all[language] || Object.values(all)[0] : all) : "";
   area.addEventListener("change", () => set({ field: element, language: byLanguage ? language : "", from: old, to: area.value.trim() }));
   wrap.append(" ", small, area);
   return wrap;
+}
+
+const areas = () => [...panel.querySelectorAll("textarea")];
+
+export const hasUnsavedCredit = () => areas().some(area => area.value !== area.defaultValue);
+
+// What is typed while another field is saved stays, and the caret in it.
+function keepTyped(of, redraw) {
+  const typed = of === shownOf ? areas().map(area => [area.value, area.defaultValue]) : [], at = typed.length ? areas().indexOf(document.activeElement) : -1;
+  const { selectionStart, selectionEnd } = areas()[at] || {};
+  redraw();
+  areas().forEach((area, n) => { if (typed[n] && typed[n][0] !== typed[n][1]) area.value = typed[n][0]; });
+  shownOf = of;
+  if (at < 0) return;
+  areas()[at].focus();
+  areas()[at].setSelectionRange(selectionStart, selectionEnd);
 }
 
 // set(change) saves one, as POST /api/parts/ID/texts takes it.
@@ -47,5 +64,5 @@ export function showAbout(part, common, language, set, remove) {
   const note = document.createElement("p");
   note.className = "quiet";
   note.textContent = "Several creators: one on each line. What is empty is taken from the credits of the whole content, shown in grey.";
-  panel.replaceChildren(figure, pick, note, ...CREDITS.map(credit => field(part, common, language, credit, set)), gone);
+  keepTyped(`${part.id}.${language}`, () => panel.replaceChildren(figure, pick, note, ...CREDITS.map(credit => field(part, common, language, credit, set)), gone));
 }

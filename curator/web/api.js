@@ -1,6 +1,8 @@
 // Requests to the program. Who is signed in is asked once; each change carries the page's token.
 let session = { name: "", role: "nobody", token: "" };
 
+const UPLOAD_BYTES_MAX = 32 << 20; // refused before it is sent, where a proxy would cut the line
+
 export class Failure extends Error {
   constructor(status, message, answer = null) {
     super(message);
@@ -9,15 +11,28 @@ export class Failure extends Error {
   }
 }
 
-async function request(method, path, body, more) {
+async function send(method, path, body, more) {
   const isBytes = body instanceof Blob, headers = { ...more };
   if (method !== "GET") headers["X-Gopura-Token"] = session.token;
+  if (isBytes && body.size > UPLOAD_BYTES_MAX) throw new Failure(413, "It is larger than 32 MB: make it smaller.");
   if (body !== undefined) headers["Content-Type"] = isBytes ? "application/octet-stream" : "application/json";
   try {
     return await fetch(path, { method, headers, body: body === undefined || isBytes ? body : JSON.stringify(body), credentials: "same-origin" });
   } catch {
     throw new Failure(0, "No connection: is gopura-curator running?");
   }
+}
+
+// A page outlives its session where the program was started again, or where its curator signed in again in another tab: the
+// change is then sent with the new session's token.
+async function request(method, path, body, more) {
+  const response = await send(method, path, body, more), before = session;
+  if (method === "GET" || path === "/api/session" || (response.status !== 401 && response.status !== 403)) return response;
+  await loadSession();
+  if (session.name === before.name && session.role !== "nobody") return session.token === before.token ? response : send(method, path, body, more);
+  const now = session.role === "nobody" ? "Nobody is signed in any more" : `${session.name} is signed in now`;
+  session = before; // what is open here is still this curator's, and can be saved when they are back
+  throw new Failure(401, `${now}. Sign in as ${before.name} in another tab of this browser, then save here: what you wrote is still on this page.`);
 }
 
 // Returns the parsed answer, or null where there is none. Throws a Failure with the program's sentence. A body is an

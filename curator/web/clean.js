@@ -145,6 +145,15 @@ export function clean(html) {
   return to;
 }
 
+// Whether a page's words and pictures are all there when it is cleaned. One that was written by hand may have a picture in a
+// list, say.
+export function isKept(html) {
+  const whole = new DOMParser().parseFromString(html, "text/html").body, kept = clean(html);
+  const words = from => from.textContent.replace(/\s+/g, ""), pictures = from => [...from.querySelectorAll("img")].map(image => image.getAttribute("src")).join("\n");
+  for (const dropped of whole.querySelectorAll([...DROPPED].join(","))) dropped.remove();
+  return words(whole) === words(kept) && pictures(whole) === pictures(kept);
+}
+
 const escape = text => text.replace(/[&<>]/g, c => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" }[c]));
 
 function inlineText(node) {

@@ -51,11 +51,14 @@ export function showDocuments(context) {
   choice.setAttribute("aria-label", "A document that is there");
   const title = element("input", { maxLength: 80, placeholder: "Works of restoration", disabled: !may("editor"), autocomplete: "off" });
   title.setAttribute("aria-label", "Title of a new document");
+  const typed = panel.dataset.part === part.id ? panel.querySelector("input[maxlength]") : null, isTyping = typed && typed === document.activeElement;
+  title.value = typed?.value || ""; // what is typed while something else is saved stays
   const make = async () => {
     const words = title.value.trim(), base = idOf(words), taken = id => partOf(id) || documents.some(one => one.id === id);
     let id = base;
     for (let n = 2; taken(id); n++) id = `${base}-${n}`;
     await ask("PUT", `/api/pages/${id}.${context.language}?kind=document`, { html: `<h2>${escape(words)}</h2>\n` }, { "If-None-Match": "*" });
+    title.value = "";
     await set(part, [...list, id]);
     edit(id);
   };
@@ -65,4 +68,6 @@ export function showDocuments(context) {
     element("ol", {}, row(part.id, -1), ...list.map(row)),
     element("div", { className: "line" }, choice, button("Add", "Add the chosen document", () => set(part, [...list, choice.value]), !others.length)),
     element("div", { className: "line" }, title, fresh));
+  panel.dataset.part = part.id;
+  if (isTyping) title.focus();
 }

@@ -1,5 +1,5 @@
 // The page of a part, edited as it looks: the toolbar, pasting, figures, and places where two people wrote at once.
-import { clean, pictureAddress, textOf } from "./clean.js";
+import { clean, isKept, pictureAddress, textOf } from "./clean.js";
 
 const byId = id => document.getElementById(id);
 const page = byId("page"), style = byId("style");
@@ -23,42 +23,72 @@ function named(blocks) {
   return blocks;
 }
 
-// Both texts of an overlap, each with a button that keeps it alone.
-function showOverlap(marked) {
-  const html = marked.replace(/^<{7} .*$/gm, "@@mine@@").replace(/^={7}$/gm, "@@theirs@@").replace(/^>{7} .*$/gm, "@@end@@");
-  const parts = html.split(/@@(mine|theirs|end)@@/), out = document.createElement("div");
-  for (let n = 0; n < parts.length; n++) {
-    if (n % 2) continue;
-    const side = n ? parts[n - 1] : "end", blocks = clean(parts[n]);
-    if (side === "end") { out.append(...named(blocks).childNodes); continue; }
-    const box = document.createElement("div"), choice = document.createElement("div"), button = document.createElement("button");
-    box.dataset.overlap = side;
-    choice.className = "choice";
-    choice.contentEditable = "false";
-    choice.textContent = side === "mine" ? "Yours" : "Somebody else's";
-    button.type = "button";
-    button.textContent = "Keep this alone";
-    button.addEventListener("click", () => {
-      const other = side === "mine" ? box.nextElementSibling : box.previousElementSibling;
-      if (other && other.dataset.overlap) other.remove();
-      choice.remove();
-      box.replaceWith(...box.childNodes);
-      changed();
-    });
-    choice.append(button);
-    box.append(choice, ...named(blocks).childNodes);
-    out.append(box);
+// The text of a merge as pieces of whole blocks, {mine, theirs}: lines between the marks are one curator's alone, and where a
+// list or a table is open, all of it belongs to the piece. Half a list would lose what makes it one.
+function wholeBlocks(marked) {
+  const pieces = [], depth = { mine: 0, theirs: 0 };
+  let piece = { mine: "", theirs: "" }, sides = ["mine", "theirs"];
+  for (const line of marked.split("\n")) {
+    if (/^<{7} /.test(line)) { sides = ["mine"]; continue; }
+    if (/^={7}$/.test(line)) { sides = ["theirs"]; continue; }
+    const ends = /^>{7} /.test(line);
+    if (ends) sides = ["mine", "theirs"];
+    for (const side of ends ? [] : sides) {
+      piece[side] += `${line}\n`;
+      depth[side] += (line.match(/<(p|h[1-6]|div|blockquote|ul|ol|figure|table)\b/gi) || []).length - (line.match(/<\/(p|h[1-6]|div|blockquote|ul|ol|figure|table)\b/gi) || []).length;
+    }
+    if (sides.length < 2 || depth.mine > 0 || depth.theirs > 0) continue;
+    pieces.push(piece);
+    piece = { mine: "", theirs: "" };
   }
+  return [...pieces, piece];
+}
+
+// One of two texts, with a button that keeps it alone.
+function overlapBox(side, blocks) {
+  const box = document.createElement("div"), choice = document.createElement("div"), button = document.createElement("button");
+  box.dataset.overlap = side;
+  choice.className = "choice";
+  choice.contentEditable = "false";
+  choice.textContent = side === "mine" ? "Yours" : "Somebody else's";
+  button.type = "button";
+  button.textContent = "Keep this alone";
+  button.addEventListener("click", () => {
+    const other = side === "mine" ? box.nextElementSibling : box.previousElementSibling;
+    if (other && other.dataset.overlap) other.remove();
+    choice.remove();
+    box.replaceWith(...box.childNodes);
+    changed();
+  });
+  choice.append(button);
+  box.append(choice, ...named(blocks).childNodes);
+  return box;
+}
+
+function showOverlaps(marked) {
+  const out = document.createElement("div");
+  for (const { mine, theirs } of wholeBlocks(marked))
+    if (mine === theirs) out.append(...named(clean(mine)).childNodes);
+    else out.append(overlapBox("mine", clean(mine)), overlapBox("theirs", clean(theirs)));
   page.replaceChildren(...out.childNodes);
 }
 
-export function setPage(html, isMarked = false) {
+// Whether somebody still has to decide between two texts.
+export const hasOverlap = () => Boolean(page.querySelector("[data-overlap]"));
+
+// Returns whether all of it is shown, and would be there again in what pageText() gives. A text that two wrote at once has
+// marks of a merge.
+export function setPage(html) {
   const [head, body, tail] = split(html);
   before = head;
   after = tail;
-  if (!isMarked) { page.replaceChildren(...named(clean(body)).childNodes); return; }
-  showOverlap(body);
-  page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+  if (/^<{7} /m.test(body)) {
+    showOverlaps(body);
+    page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+    return true;
+  }
+  page.replaceChildren(...named(clean(body)).childNodes);
+  return isKept(body);
 }
 
 // "" if there is nothing on it. A new page has no frame around it.

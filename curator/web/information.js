@@ -1,21 +1,24 @@
 // The page on which curators write: parts at the left, a part's texts and its page in the middle, preview, history and
 // credits at the right. docs/curator.md has the addresses.
-import { showAbout } from "./about.js";
+import { hasUnsavedCredit, showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
 import { clean, pictureAddress } from "./clean.js";
 import { showDocuments } from "./documents.js";
-import { allowEditing, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
+import { allowEditing, hasOverlap, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
 import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
 import { makeFigure, pickPicture, readFigure, sendPicture, setPictures } from "./pictures.js";
 import { showPreview } from "./preview.js";
+import { locate, showProblems } from "./problems.js";
 import { sendSound, showSound, soundKind } from "./sound.js";
 
 const byId = id => document.getElementById(id);
 const FIELDS = ["title", "caption", "reading"];
 let information = { parts: [], languages: [], tours: [], problems: [], pictures: [], documents: [] };
-let part = null, language = "", tag = "", loadedText = "", loaded = {}, dirty = false, panel = "preview", saving = false;
+let part = null, language = "", tag = "", loadedText = "", loaded = {}, dirty = false, panel = "preview";
+let saving = null, sending = null; // promises while texts, or a credit, are on their way
+let loads = 0, isLoaded = false; // of pages: a late one is not shown
 
 let shown = ""; // the document in the editor; "": the part's own page
 const pageId = () => shown || part.id;
@@ -35,28 +38,16 @@ function setDirty(on) {
   byId("state").textContent = on ? "Not saved yet" : "";
 }
 
-// ---- what is wrong
-
-// Each problem with the part that it is about, as its file or its sentence names it.
-function locate(problem) {
-  const page = /^pages\/([a-z0-9_-]+)\.([A-Za-z-]+)\.html$/.exec(problem.file), named = /part "([a-z0-9_-]+)"/.exec(problem.text);
-  return { ...problem, part: page ? page[1] : named ? named[1] : "", language: page ? page[2] : "" };
+// Says that something else was saved, unless what is written is not.
+function tellSaved(words) {
+  edited();
+  if (!dirty) byId("state").textContent = words;
 }
 
-// A build's sentence says what to write into parts.json; here there is a field for it.
-function forPage(text) {
-  const names = new Intl.DisplayNames([], { type: "language" });
-  const short = text.replace(/^part "[^"]*"[:,]? /, "").replace(/: add "[a-z]+": .*$/, "").replace(/in "([A-Za-z-]+)"/, (all, code) => `in ${names.of(code)}`);
-  return short[0].toUpperCase() + short.slice(1);
-}
-
-function showProblems(list) {
-  byId("problems").replaceChildren(...list.map(problem => {
-    const item = document.createElement("li");
-    item.className = problem.error ? "error" : "";
-    item.textContent = `${problem.language && problem.language !== language ? `${problem.language}: ` : ""}${forPage(problem.text)}`;
-    return item;
-  }));
+// Before what is open gives way to something else.
+async function mayLeave() {
+  await saving;
+  return !dirty || confirm("What you wrote is not saved. Leave it?");
 }
 
 const problemsHere = () => information.problems.filter(problem => part && problem.part === part.id && (!problem.language || problem.language === language));
@@ -69,9 +60,13 @@ async function loadInformation() {
   setPictures(information.pictures);
   byId("name").textContent = information.name;
   if (!language) language = information.languages[0];
-  if (part) part = information.parts.find(one => one.id === part.id) || null;
+  if (part) {
+    const now = information.parts.find(one => one.id === part.id);
+    if (!now) tell("Somebody else has removed this part. What you wrote is still here, but cannot be saved: copy what you want to keep.");
+    part = now || part;
+  }
   showList(information.parts, part?.id, information.languages, information.problems);
-  if (part) { showLanguages(); showProblems(problemsHere()); }
+  if (part) { showLanguages(); showProblems(problemsHere(), language); }
 }
 
 function showLanguages() {
@@ -103,9 +98,10 @@ function arrowTabs(list) {
   });
 }
 
-async function open(id, code = language) {
+// Opens a part in a language; again: also if it is open, as it is saved.
+async function open(id, code = language, again = false) {
   const other = part?.id !== id || code !== language;
-  if (dirty && other && !confirm("What you wrote is not saved. Leave it?")) return;
+  if ((!other && isLoaded && !again) || !await mayLeave()) return;
   if (part?.id !== id) shown = "";
   part = information.parts.find(one => one.id === id);
   language = code;
@@ -119,9 +115,9 @@ async function open(id, code = language) {
   byId("page").dir = byId("title").dir = byId("caption").dir = "auto";
   showLanguages();
   showList(information.parts, part.id, information.languages, information.problems);
-  showProblems(problemsHere());
+  showProblems(problemsHere(), language);
   if (other) tell("");
-  await loadPage();
+  if (!await loadPage()) return;
   history.replaceState(null, "", `#${id}.${language}`);
   showPanel();
 }
@@ -136,10 +132,9 @@ function showWhich() {
 async function editDocument(id) {
   const wanted = id === part.id ? "" : id;
   if (wanted === shown) return;
-  if (dirty && !confirm("What you wrote is not saved. Leave it?")) return;
+  if (!await mayLeave()) return;
   shown = wanted;
-  await loadPage();
-  showPanel();
+  if (await loadPage()) showPanel();
 }
 
 async function setDocuments(of, list) {
@@ -148,16 +143,29 @@ async function setDocuments(of, list) {
   showWhich();
 }
 
-// Nothing can be written on the page before it is here, because it would be lost.
+// Nothing can be written on the page before it is here, because it would be lost. Returns false if another was asked for
+// meanwhile.
 async function loadPage() {
+  const mine = ++loads;
+  let page = { html: "", tag: "" }, why = "";
   showWhich();
   allowEditing(false);
-  const page = await ask("GET", pageAddress());
+  isLoaded = false;
+  try {
+    page = await ask("GET", pageAddress());
+  } catch (failure) {
+    why = failure.message;
+  }
+  if (mine !== loads) return false;
+  const isWhole = setPage(page.html || "<p><br></p>");
   tag = page.tag;
-  setPage(page.html || "<p><br></p>");
   loadedText = pageText();
-  allowEditing(may("editor"));
+  isLoaded = !why;
+  allowEditing(may("editor") && isLoaded && isWhole);
+  if (why) tell(`The page could not be loaded: ${why} Choose it again.`);
+  else if (!isWhole) tell(`${pageName()} has something that cannot be edited here and is not shown, such as a picture in a list or a table: change the file itself.`);
   edited(); // fields may have been written in meanwhile
+  return true;
 }
 
 // ---- saving
@@ -186,79 +194,110 @@ async function savePage() {
   const condition = tag ? { "If-Match": `"${tag}"` } : { "If-None-Match": "*" };
   try {
     const answer = text ? await ask("PUT", pageAddress(), { html: text }, condition) : await ask("DELETE", pageAddress(), undefined, condition);
+    if (answer.merged && pageText() !== text) { // what was written meanwhile began from the text that was sent
+      tag = answer.sent;
+      loadedText = text;
+      return savePage();
+    }
     tag = answer.tag;
+    loadedText = text;
     if (answer.merged) {
       setPage(answer.html);
+      loadedText = pageText();
       tell("Saved, together with what somebody else has changed on this page meanwhile.", true);
     }
-    loadedText = pageText();
     return true;
   } catch (failure) {
-    if (failure.status === 409 && failure.answer?.html) {
-      tag = failure.answer.tag;
-      setPage(failure.answer.html, true);
-      tell("Somebody else has changed the same paragraph meanwhile. Both texts are on the page, blue and green: keep one, or make one of both, and save again.");
-    } else fail(failure);
+    if (failure.status !== 409 || failure.answer?.tag === undefined) fail(failure);
+    else if (failure.answer.html && pageText() !== text) return savePage();
+    else meet(failure.answer);
     return false;
   }
 }
 
-function fail(failure) {
-  const problems = failure.answer?.problems;
-  if (problems?.length) showProblems(problems.map(locate));
-  tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
+// Somebody else has saved the page meanwhile: what they have comes to the editor, and the next save begins from it.
+function meet(theirs) {
+  tag = theirs.tag;
+  if (theirs.html) setPage(theirs.html);
+  loadedText = hasOverlap() || !theirs.html ? "" : pageText();
+  tell(hasOverlap() ? "Somebody else has changed the same paragraph meanwhile. Both texts are on the page, blue and green: keep one, or make one of both, and save again."
+    : `Not saved: ${theirs.message}.`);
   byId("message").scrollIntoView({ block: "center" });
 }
 
-async function save() {
-  if (saving || !part || !may("editor")) return;
-  saving = true;
+function fail(failure) {
+  const problems = failure.answer?.problems;
+  if (problems?.length) showProblems(problems.map(locate), language);
+  tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
+  byId(problems?.length ? "problems" : "message").scrollIntoView({ block: "center" });
+}
+
+// What is written meanwhile is not saved with it, and stays.
+async function saveAll() {
+  if (hasOverlap()) {
+    tell("Not saved: both texts of a paragraph are still on the page, blue and green. Keep one of them first.");
+    page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+    return;
+  }
   byId("save").disabled = true;
   byId("state").textContent = "Saving …";
   tell("");
   try {
+    await sending;
     const good = await saveTexts() && await savePage();
-    setDirty(!good);
-    if (good) {
-      await loadInformation();
-      showPanel();
-      if (byId("message").hidden) byId("state").textContent = "Saved";
-    }
+    edited();
+    if (!good) return;
+    await loadInformation();
+    showPanel();
+    if (byId("message").hidden) tellSaved("Saved");
   } catch (failure) {
     fail(failure);
     setDirty(true);
   }
-  saving = false;
+}
+
+function save() {
+  if (!part || !may("editor")) return;
+  if (byId("about").contains(document.activeElement)) document.activeElement.blur(); // a credit is sent as its field is left
+  const mine = Promise.resolve(saving).then(saveAll).finally(() => { if (saving === mine) saving = null; });
+  saving = mine; // one after another
 }
 
 // ---- the panels at the right
 
 async function restore(version) {
+  if (!await mayLeave()) return;
   try {
     await ask("POST", "/api/restore", { document: pageName(), version, tag });
+    setDirty(false);
     await loadInformation();
-    await open(part.id);
+    await open(part.id, language, true);
     tell("This is the old version. It was saved as a new one, so nothing is lost.", true);
   } catch (failure) {
-    fail(failure);
+    if (failure.status !== 412) { fail(failure); return; }
+    setDirty(false);
+    await open(part.id, language, true);
+    tell("Somebody else has saved this page meanwhile, and this is theirs: go back once more if it is to go.");
   }
 }
 
 async function setField(change) {
+  const isHere = change.language === language && FIELDS.includes(change.field), field = isHere ? byId(change.field) : null;
+  if (isHere && field.value.trim() !== loaded[change.field] && !confirm(`What you wrote as ${change.field} is not saved. Leave it?`)) return;
   try {
     await ask("POST", `/api/parts/${part.id}/texts`, { changes: [change] });
     await loadInformation();
-    if (change.language === language && FIELDS.includes(change.field)) {
-      loaded[change.field] = byId(change.field).value = change.to;
-      edited();
-    }
-    showPanel();
+    if (isHere) loaded[change.field] = field.value = change.to;
+    edited();
   } catch (failure) {
-    if (failure.status === 409) tell(`Somebody else has changed this meanwhile, to “${failure.answer.theirs}”.`);
+    if (failure.status === 409) tell(`Not saved: somebody else has changed this meanwhile, to “${failure.answer.theirs}”. Yours is still in its field: change it as it should be.`);
     else fail(failure);
-    await loadInformation();
+    await loadInformation().catch(() => {});
   }
+  showPanel();
 }
+
+const sendField = change => (sending = setField(change).finally(() => { sending = null; }));
 
 async function changeFiles(work) {
   tell("");
@@ -266,17 +305,18 @@ async function changeFiles(work) {
   try {
     await work();
     await loadInformation();
-    byId("state").textContent = "Saved";
+    tellSaved("Saved");
   } catch (failure) {
-    byId("state").textContent = "";
+    tellSaved("");
     fail(failure);
-    if (failure.status === 412) await loadInformation();
+    if (failure.status === 409 || failure.status === 412) await loadInformation(); // what others have, for the next try
   }
   showPanel();
 }
 
 async function remove() {
-  if (!confirm(`Remove “${titleOf(part, information.languages)}” with its pages in all languages? They stay in the history.`)) return;
+  if (!confirm(`Remove “${titleOf(part, information.languages)}” with its region on the model, its texts and its pages in all languages? They stay in the history.`)) return;
+  await saving;
   try {
     await ask("DELETE", `/api/parts/${part.id}`);
     part = null;
@@ -297,18 +337,21 @@ function showPanel() {
     byId(tab.getAttribute("aria-controls")).hidden = !on;
   }
   if (!part) return;
-  if (panel === "history") showHistory(part, language, pageName(), restore, setField);
+  if (panel === "history") showHistory(part, language, pageName(), restore, sendField);
   if (panel === "documents") showDocuments({ part, parts: information.parts, documents: information.documents, titleOf: one => titleOf(one, information.languages),
     shown: pageId(), language, edit: editDocument, set: setDocuments, done: changeFiles });
   if (panel === "sound") showSound(part, language, changeFiles);
-  if (panel === "about") showAbout(part, information.credits, language, setField, remove);
+  if (panel === "about") showAbout(part, information.credits, language, sendField, remove);
   if (panel === "preview") showPreview(part, language, dirty && !shown ? pageText() : null);
 }
 
 // ---- files that are dropped, links, pictures
 
+// All of them belong to what is open when they are dropped.
 async function takeFiles(files) {
+  const id = part.id, code = language, which = shown;
   for (const file of files) {
+    if (part.id !== id || language !== code || shown !== which) { tell(`${file.name} was not taken, because something else was opened meanwhile: drop it again.`); return; }
     try {
       if (soundKind(file)) {
         await changeFiles(() => sendSound(soundKind(file), part, language, file));
@@ -317,6 +360,7 @@ async function takeFiles(files) {
       if (/^image\//.test(file.type)) {
         byId("state").textContent = `Sending ${file.name} …`;
         const name = await sendPicture(file);
+        if (part.id !== id || language !== code || shown !== which) { tell(`${file.name} was sent, and can be chosen for any page: something else was opened meanwhile.`); return; }
         insertBlocks(makeFigure({ name, alt: "", caption: "", credit: "" }));
       } else if (/^text\/html/.test(file.type)) {
         insertBlocks(clean(await file.text()));
@@ -371,7 +415,7 @@ setUpList(id => open(id), async (id, before) => {
   try {
     await ask("POST", `/api/parts/${id}/place`, { before });
     await loadInformation();
-    byId("state").textContent = "The order is saved";
+    tellSaved("The order is saved");
     byId(`part-${id}`)?.focus();
   } catch (failure) {
     tell(failure.message);
@@ -390,7 +434,7 @@ byId("save").addEventListener("click", save);
 document.addEventListener("keydown", event => {
   if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "s") { event.preventDefault(); save(); }
 });
-addEventListener("beforeunload", event => { if (dirty) event.preventDefault(); });
+addEventListener("beforeunload", event => { if (dirty || saving || hasUnsavedCredit()) event.preventDefault(); });
 const page = byId("page");
 page.addEventListener("dragover", event => { if (may("editor") && !event.dataTransfer.types.includes("text/x-part")) { event.preventDefault(); page.classList.add("dropping"); } });
 page.addEventListener("dragleave", () => page.classList.remove("dropping"));

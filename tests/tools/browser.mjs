@@ -12,7 +12,7 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
   const profile = mkdtempSync(join(tmpdir(), "gopura-browser-"));
   const child = spawn("chromium", ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", `--user-data-dir=${profile}`, `--window-size=${width},${height}`, "--remote-debugging-pipe", "about:blank"],
     { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
-  const waiting = new Map(), complaints = [];
+  const waiting = new Map(), complaints = [], dialogs = Object.assign([], { accept: true });
   let last = 0, input = "", session;
 
   child.stdio[4].on("data", data => {
@@ -29,7 +29,10 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
     }
     if (message.method === "Runtime.exceptionThrown") complaints.push(message.params.exceptionDetails.exception?.description || message.params.exceptionDetails.text);
     if (message.method === "Log.entryAdded" && message.params.entry.level === "error") complaints.push(`${message.params.entry.text} ${message.params.entry.url || ""}`);
-    if (message.method === "Page.javascriptDialogOpening") send("Page.handleJavaScriptDialog", { accept: true });
+    if (message.method === "Page.javascriptDialogOpening") {
+      dialogs.push(message.params.message);
+      send("Page.handleJavaScriptDialog", { accept: dialogs.accept });
+    }
   }
   function send(method, params = {}, own = session) {
     const id = ++last;
@@ -56,6 +59,7 @@ export async function openBrowser({ width = 1280, height = 800, dark = false, to
     return answer.result.value;
   }
   return {
+    dialogs, // what was asked; dialogs.accept is the answer
     complaints, // what the page's scripts threw, and what it could not load
     send, evaluate, sleep, look,
     go: async url => { await send("Page.navigate", { url }); await sleep(300); },

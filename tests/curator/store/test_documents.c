@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -45,6 +46,17 @@ int __wrap_fsync(int fd)
 int __wrap_rename(const char *from, const char *to)
 {
 	return fails_now() ? -1 : __real_rename(from, to);
+}
+
+/* libgit2 calls this one too. */
+static bool disk_is_full;
+
+ssize_t write(int fd, const void *bytes, size_t size)
+{
+	if (!disk_is_full)
+		return syscall(SYS_write, fd, bytes, size);
+	errno = ENOSPC;
+	return -1;
 }
 
 /* ---- a folder */
@@ -426,6 +438,21 @@ static void a_history_that_cannot_be_read_is_not_put_aside(void **state)
 	documents_close(documents);
 }
 
+static void a_full_disk_is_called_so(void **state)
+{
+	struct documents *documents = opened();
+	struct document_change change = { .name = "pages/gate.en.html", .text = bytes_of("new") };
+	struct diagnostics diagnostics = { 0 };
+
+	(void)state;
+	disk_is_full = true;
+	CHECK(documents_save(documents, &change, 1, "ana", "page", &diagnostics) == -ENOSPC);
+	disk_is_full = false;
+	CHECK(strstr(diagnostics.first.text, "No space left"));
+	CHECK(documents_save(documents, &change, 1, "ana", "page", NULL) == 0);
+	documents_close(documents);
+}
+
 static void another_process_cannot_open_the_folder(void **state)
 {
 	struct documents *documents = opened();
@@ -458,6 +485,7 @@ int main(void)
 		TEST(a_damaged_history_is_put_aside),
 		TEST(a_history_without_its_objects_is_put_aside),
 		TEST(a_history_that_cannot_be_read_is_not_put_aside),
+		TEST(a_full_disk_is_called_so),
 		TEST(another_process_cannot_open_the_folder),
 	};
 
