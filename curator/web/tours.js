@@ -5,12 +5,12 @@ import { ask, loadSession, may } from "./api.js";
 import { Eye } from "./eye.js";
 import { versionsOf } from "./history.js";
 import { showStops } from "./stop_list.js";
+import { Player } from "./tour_player.js";
 
 const byId = id => document.getElementById(id);
 const TOURS_MAX = 8, STOPS_MAX = 64, FLIGHT_MS = 500;
 let information, tours = [], tag = "", tour = null, language = "", chosen = -1, dirty = false, saving = false;
-let flight = null, flightTimer, asked = 0; // the path of the tour as it is in the editor
-let playing = 0, playedMs = 0;             // the time of the last frame; 0: it rests
+let flightTimer, asked = 0; // for the path of the tour as it is in the editor
 
 const titleOf = one => information.languages.map(code => one.title?.[code]).find(Boolean) || one.id;
 const round = numbers => numbers.map(number => Math.round(number * 1000) / 1000);
@@ -36,81 +36,30 @@ const eye = new Eye(byId("stage"), [byId("picture")], byId("quality"), {
   },
   moved: () => {},
   tell,
-  press: () => pause(),
+  press: () => player.pause(),
   closed: wasOpen => { byId("state").textContent = wasOpen ? "Connection lost: reload the page." : "No connection: is gopura-curator running?"; },
 });
 
 function look(n) {
-  const stop = tour?.stops[n], place = stop?.eye && stop.target ? stop : flight?.stops?.[n];
+  const stop = tour?.stops[n], place = stop?.eye && stop.target ? stop : player.flight?.stops?.[n];
   if (place && eye.camera) eye.lookFrom(place.eye, place.target);
 }
 
 // ---- playing
 
-const clock = ms => `${Math.floor(ms / 60000)}:${String(Math.floor(ms / 1000) % 60).padStart(2, "0")}`;
-
-function showTime() {
-  byId("when").value = playedMs;
-  byId("time").textContent = `${clock(playedMs)} / ${clock(flight?.duration_ms || 0)}`;
-  byId("when").setAttribute("aria-valuetext", clock(playedMs));
-}
-
-// Puts the eye where the tour is; poses between two samples are in between.
-function pose() {
-  const at = Math.min(playedMs, flight.duration_ms) / flight.step_ms, n = Math.min(Math.floor(at), flight.at.length - 2), share = Math.min(1, at - n);
-  const numbers = Array.from({ length: 6 }, (_, i) => flight.poses[6 * n + i] * (1 - share) + flight.poses[6 * n + 6 + i] * share);
-  const target = numbers.slice(3), position = numbers.slice(0, 3);
-  // The target is a metre away; the eye turns about something farther off when the curator takes over.
-  eye.lookFrom(position, position.map((p, i) => p + (target[i] - p) * Math.max(1, eye.camera.size / 8)));
-  const stop = tour.stops[flight.at[n]], said = stop?.caption?.[language] || "";
-  byId("said").textContent = said;
-  byId("said").hidden = !said;
-  showTime();
-}
-
-function pause() {
-  if (!playing) return;
-  playing = 0;
-  eye.flies = false;
-  byId("play").textContent = "Play";
-  byId("said").hidden = true;
-}
-
-function step(now) {
-  if (!playing) return;
-  playedMs += Math.min(now - playing, 250);
-  playing = now;
-  pose();
-  if (playedMs >= flight.duration_ms) { pause(); playedMs = 0; } else requestAnimationFrame(step);
-}
-
-function play() {
-  if (playing) { pause(); return; }
-  if (!flight?.poses || !eye.camera) return;
-  if (playedMs >= flight.duration_ms) playedMs = 0;
-  playing = performance.now();
-  eye.flies = true;
-  byId("play").textContent = "Pause";
-  requestAnimationFrame(step);
-}
+const player = new Player(eye, n => tour.stops[n]?.caption?.[language] || "");
 
 // Asks for the path of the tour as it is in the editor, and what a build would say about it.
 async function askFlight() {
   const mine = ++asked, of = tour;
+  let flight;
   try {
-    const answer = await ask("POST", `/api/tours/${tour.id}/flight`, { tours });
-    if (mine !== asked || of !== tour) return;
-    flight = answer;
+    flight = await ask("POST", `/api/tours/${tour.id}/flight`, { tours });
   } catch (failure) {
-    if (mine !== asked) return;
     flight = { problems: [{ error: true, text: failure.message }] };
   }
-  const flies = Boolean(flight.poses);
-  if (!flies) pause();
-  playedMs = Math.min(playedMs, flight.duration_ms || 0);
-  byId("play").disabled = byId("when").disabled = !flies;
-  byId("when").max = flight.duration_ms || 0;
-  showTime();
+  if (mine !== asked || of !== tour) return;
+  player.take(flight);
   showProblems(flight.problems);
 }
 
@@ -190,18 +139,16 @@ function show() {
     chosen, language, languageName: new Intl.DisplayNames([], { type: "language" }).of(language),
     parts: information.parts.map(part => ({ id: part.id, title: titleOf(part) })),
     changed, move, look,
-    choose: n => { chosen = n; pause(); show(); byId(`stop-${n}`)?.focus(); if (n >= 0) look(n); },
+    choose: n => { chosen = n; player.pause(); show(); byId(`stop-${n}`)?.focus(); if (n >= 0) look(n); },
     set: n => { Object.assign(tour.stops[n], present()); changed(); tell("This stop now has the present eye.", true); },
     remove: n => { tour.stops.splice(n, 1); chosen = -1; changed(); show(); byId(`stop-${Math.min(n, tour.stops.length - 1)}`)?.focus(); },
   });
 }
 
 function open(one) {
-  pause();
+  player.begin();
   tour = one;
   chosen = -1;
-  flight = null;
-  playedMs = 0;
   tell("");
   byId("problems").replaceChildren();
   show();
@@ -216,7 +163,7 @@ const present = () => ({ eye: round(eye.position), target: round(eye.camera.targ
 
 function keep() {
   if (byId("keep").disabled) return;
-  pause();
+  player.pause();
   const at = chosen < 0 ? tour.stops.length : chosen + 1;
   tour.stops.splice(at, 0, present());
   chosen = at;
@@ -325,8 +272,6 @@ byId("remove").addEventListener("click", () => {
   changed(Boolean(tour));
 });
 byId("keep").addEventListener("click", keep);
-byId("play").addEventListener("click", play);
-byId("when").addEventListener("input", () => { pause(); playedMs = Number(byId("when").value); if (flight?.poses && eye.camera) pose(); });
 byId("save").addEventListener("click", save);
 byId("history-box").addEventListener("toggle", () => { if (byId("history-box").open) showVersions(); });
 byId("stage").addEventListener("dblclick", event => {
@@ -341,9 +286,9 @@ document.addEventListener("keydown", event => {
   if (control || !eye.camera || event.target.matches("input, textarea, select")) return;
   const onStage = document.activeElement === byId("stage");
   if (key === "k") keep();
-  else if (onStage && key === " ") play();
-  else if (onStage && TURN_KEYS[key]) { pause(); event.shiftKey ? eye.pan(...TURN_KEYS[key]) : eye.turn(...TURN_KEYS[key]); }
-  else if (onStage && ZOOM_KEYS[key]) { pause(); eye.zoom(ZOOM_KEYS[key]); }
+  else if (onStage && key === " ") player.play();
+  else if (onStage && TURN_KEYS[key]) { player.pause(); event.shiftKey ? eye.pan(...TURN_KEYS[key]) : eye.turn(...TURN_KEYS[key]); }
+  else if (onStage && ZOOM_KEYS[key]) { player.pause(); eye.zoom(ZOOM_KEYS[key]); }
   else return;
   event.preventDefault();
 });
