@@ -22,6 +22,7 @@ port=$(sed -nE 's|.*http://127.0.0.1:([0-9]+)/.*|\1|p' "$work/curator.log")
 timeout 240 node tests/e2e/touring.mjs "$port" "$work" || { tail "$work/curator.log"; fail "in the browser"; }
 kill "$curator"
 wait "$curator" || fail "it did not end well"
+! grep -qE '[5-8] are$' "$work/curator.log" || fail "pages that were left are still connected"
 
 # ---- a build finds no fault in what was saved
 build/gopura-content build "$work/content" --dry-run >"$work/log" 2>&1 || { cat "$work/log"; fail "its tours are refused"; }
