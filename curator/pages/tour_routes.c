@@ -1,4 +1,4 @@
-/* Reads, merges, saves and flies tours.json. */
+/* Reads, saves and flies tours.json. */
 #include "curator/pages/tour_routes.h"
 
 #include <cjson/cJSON.h>
@@ -9,7 +9,6 @@
 #include "curator/pages/content_save.h"
 #include "curator/pages/save_answer.h"
 #include "curator/pages/tour_flight.h"
-#include "curator/store/documents_versions.h"
 #include "curator/store/json_document.h"
 #include "curator/store/parts_file.h"
 
@@ -66,113 +65,70 @@ static int read_body(const struct api_request *request, struct api_response *res
 
 /* ---- saving */
 
-/* Tours that somebody saves. */
-struct tours_save {
-	struct site *site;
-	const struct api_request *request;
-	struct api_response *response;
-	char base[DOCUMENT_TAG_BYTES]; /* from which they began; "": there was no file */
-	struct buffer text, merged;
-	bool is_merged;
-};
-
-static void answer_theirs(const struct tours_save *save, const cJSON *root, const char *tag)
+/* The page merges them: it has what its tours began from, and asks where both changed the same. */
+static void answer_theirs(struct api_response *response, const cJSON *root, const char *tag)
 {
 	cJSON *json = tours_json(root, tag);
 
 	cJSON_AddStringToObject(json, "message",
-				"somebody else has changed the same tour meanwhile: take theirs, "
-				"or save again to put yours in its place");
-	save->response->status = 409;
-	api_send_json(save->response, json);
+				"somebody else has saved tours meanwhile: these are the newest");
+	response->status = 409;
+	api_send_json(response, json);
 }
 
-/* Brings the text up to what is there now. Returns 0, or -ESTALE with an answer. */
-static int meet_others(struct tours_save *save, const cJSON *root, const char *now)
+static void answer_saved(struct api_response *response, const char *tag)
 {
-	struct diagnostics diagnostics = { 0 };
-	char tag[DOCUMENT_TAG_BYTES];
-	bool is_clean = false;
-	cJSON *both = NULL;
+	cJSON *json = cJSON_CreateObject();
+
+	cJSON_AddStringToObject(json, "tag", tag);
+	api_send_json(response, json);
+}
+
+/* Everything else that the file holds stays. root is changed; tours is taken. */
+static int save_tours(struct site *site, cJSON *root, cJSON *tours, struct document_change *change,
+		      const char *author, struct diagnostics *problems)
+{
+	struct buffer text;
 	int rc;
 
-	if (strcmp(save->base, now) == 0)
-		return 0;
-	rc = *now ? documents_merge(save->site->documents, TOURS_FILE, save->base,
-				    buffer_bytes(&save->text), &save->merged, &is_clean, tag,
-				    &diagnostics)
-		  : -ENOENT;
-	save->is_merged =
-		rc == 0 && is_clean && json_parse(&both, buffer_bytes(&save->merged)) == 0;
-	cJSON_Delete(both);
-	if (!save->is_merged) {
-		answer_theirs(save, root, now);
-		return -ESTALE;
-	}
-	memcpy(save->base, tag, sizeof(save->base));
-	return 0;
-}
-
-static void answer_saved(const struct tours_save *save, const char *tag)
-{
-	const struct buffer *text = save->is_merged ? &save->merged : &save->text;
-	cJSON *root, *json;
-
-	if (json_parse(&root, buffer_bytes(text)) < 0)
-		root = NULL; /* only for lack of memory; then api_send_json says so */
-	json = tours_json(root, tag);
-	cJSON_AddBoolToObject(json, "merged", save->is_merged);
-	api_send_json(save->response, json);
-	cJSON_Delete(root);
-}
-
-/* Everything else that the file holds stays. */
-static void save_tours(struct tours_save *save, cJSON *tours)
-{
-	struct diagnostics problems = { .max = CONTENT_PROBLEMS_MAX };
-	struct document_change change = { .name = TOURS_FILE, .base = save->base };
-	char tag[DOCUMENT_TAG_BYTES];
-	cJSON *root, *mine = NULL;
-	int rc = read_tours(&root, save->site, tag, &problems);
-
+	buffer_init(&text, TOURS_BYTES_MAX);
+	rc = json_set(root, "tours", tours) ? json_print(root, &text) : -ENOMEM;
 	if (rc == 0) {
-		mine = cJSON_Duplicate(root, true);
-		if (!mine || !json_set(mine, "tours", tours))
-			rc = -ENOMEM;
+		change->text = buffer_bytes(&text);
+		rc = content_save(site, change, 1, author, "tours", problems);
 	}
-	if (rc < 0 && !mine)
-		cJSON_Delete(tours);
-	if (rc == 0)
-		rc = json_print(mine, &save->text);
-	if (rc == 0 && meet_others(save, root, tag) == 0) {
-		change.text = buffer_bytes(save->is_merged ? &save->merged : &save->text);
-		rc = content_save(save->site, &change, 1, save->request->caller.name,
-				  save->is_merged ? "tours, merged" : "tours", &problems);
-		if (rc == 0)
-			answer_saved(save, change.tag);
-	}
-	if (rc < 0)
-		save_answer_fail(save->response, rc, &problems);
-	cJSON_Delete(mine);
-	cJSON_Delete(root);
-	diagnostics_finish(&problems);
+	buffer_finish(&text);
+	return rc;
 }
 
 static void put_tours(void *user, const struct api_request *request, struct api_response *response)
 {
-	struct tours_save save = { .site = user, .request = request, .response = response };
-	cJSON *json;
+	struct diagnostics problems = { .max = CONTENT_PROBLEMS_MAX };
+	char base[DOCUMENT_TAG_BYTES], now[DOCUMENT_TAG_BYTES];
+	struct document_change change = { .name = TOURS_FILE, .base = base };
+	struct site *site = user;
+	cJSON *json, *root;
+	int rc;
 
-	if (save_base_read(request, response, save.base) < 0 ||
-	    read_body(request, response, &json) < 0)
+	if (save_base_read(request, response, base) < 0 || read_body(request, response, &json) < 0)
 		return;
-	buffer_init(&save.text, TOURS_BYTES_MAX);
-	buffer_init(&save.merged, 4 * TOURS_BYTES_MAX);
-	documents_lock(save.site->documents);
-	save_tours(&save, cJSON_DetachItemFromObjectCaseSensitive(json, "tours"));
-	documents_unlock(save.site->documents);
-	buffer_finish(&save.merged);
-	buffer_finish(&save.text);
+	documents_lock(site->documents);
+	rc = read_tours(&root, site, now, &problems);
+	if (rc == 0 && strcmp(base, now) != 0) {
+		answer_theirs(response, root, now);
+	} else {
+		if (rc == 0)
+			rc = save_tours(site, root,
+					cJSON_DetachItemFromObjectCaseSensitive(json, "tours"),
+					&change, request->caller.name, &problems);
+		if (rc < 0)
+			save_answer_fail(response, rc, &problems);
+		else
+			answer_saved(response, change.tag);
+	}
+	documents_unlock(site->documents);
+	diagnostics_finish(&problems);
+	cJSON_Delete(root);
 	cJSON_Delete(json);
 }
 

@@ -49,6 +49,7 @@
 	FILE(documents, "/documents.js", "documents.js", SCRIPT, true)                             \
 	FILE(sound, "/sound.js", "sound.js", SCRIPT, true)                                         \
 	FILE(stop_list, "/stop_list.js", "stop_list.js", SCRIPT, true)                             \
+	FILE(tour_merge, "/tour_merge.js", "tour_merge.js", SCRIPT, true)                          \
 	FILE(tour_player, "/tour_player.js", "tour_player.js", SCRIPT, true)                       \
 	FILE(tours_style, "/tours.css", "tours.css", STYLE, true)                                  \
 	FILE(style, "/curator.css", "curator.css", STYLE, true)                                    \

@@ -1,6 +1,4 @@
 // The stops of a tour: choosing one, their order, and the form of the chosen one.
-import { may } from "./api.js";
-
 const list = document.getElementById("stops");
 let dragged = -1;
 
@@ -14,8 +12,8 @@ function labelled(words, help, field) {
   return element("label", {}, words, " ", element("small", { textContent: help }), field);
 }
 
-function seconds(stop, key, usual, changed) {
-  const field = element("input", { type: "number", min: key === "stay" ? 0 : 1, max: 120, step: "any", value: stop[key] ?? "", placeholder: usual, readOnly: !may("editor") });
+function seconds(stop, key, usual, { changed, edits }) {
+  const field = element("input", { type: "number", min: key === "stay" ? 0 : 1, max: 120, step: "any", value: stop[key] ?? "", placeholder: usual, readOnly: !edits });
   field.dataset.key = key;
   field.addEventListener("input", () => {
     if (field.value === "") delete stop[key];
@@ -26,7 +24,7 @@ function seconds(stop, key, usual, changed) {
 }
 
 function form(stop, n, tour, context) {
-  const words = element("textarea", { rows: 3, maxLength: 2000, value: stop.caption?.[context.language] || "", lang: context.language, dir: "auto", readOnly: !may("editor") });
+  const words = element("textarea", { rows: 3, maxLength: 2000, value: stop.caption?.[context.language] || "", lang: context.language, dir: "auto", readOnly: !context.edits });
   words.dataset.key = "caption";
   words.addEventListener("input", () => {
     stop.caption = { ...stop.caption, [context.language]: words.value };
@@ -34,7 +32,8 @@ function form(stop, n, tour, context) {
     if (!Object.keys(stop.caption).length) delete stop.caption;
     context.changed(false);
   });
-  const part = element("select", { disabled: !may("editor") }, new Option("none", ""), ...context.parts.map(one => new Option(one.title, one.id)));
+  const part = element("select", { disabled: !context.edits }, new Option("none", ""), ...context.parts.map(one => new Option(one.title, one.id)));
+  part.dataset.key = "part";
   part.value = stop.part || "";
   part.addEventListener("change", () => {
     if (part.value) stop.part = part.value;
@@ -42,7 +41,7 @@ function form(stop, n, tour, context) {
     context.changed();
   });
   const button = (textContent, action, title, className = "") => {
-    const made = element("button", { type: "button", textContent, title, className, disabled: !may("editor") && action !== context.look });
+    const made = element("button", { type: "button", textContent, title, className, disabled: !context.edits && action !== context.look });
     made.addEventListener("click", () => action(n));
     return made;
   };
@@ -50,8 +49,8 @@ function form(stop, n, tour, context) {
     labelled("What is said", context.languageName, words),
     labelled("Part", "shown while it stays", part),
     element("div", { className: "times" },
-      labelled("Stays", "seconds; 0: passes", seconds(stop, "stay", "6", context.changed)),
-      labelled("Flight to it", "seconds", seconds(stop, "travel", "by its length", context.changed))),
+      labelled("Stays", "seconds; 0: passes", seconds(stop, "stay", "6", context)),
+      labelled("Flight to it", "seconds", seconds(stop, "travel", "by its length", context))),
     element("div", { className: "line" },
       button("Look from here", context.look, "Bring the eye to this stop"),
       button("Set to this view", context.set, "This stop gets the present eye"),
@@ -71,10 +70,10 @@ function row(stop, n, tour, context) {
     if (!step) return;
     event.preventDefault();
     const to = Math.max(0, Math.min(last, n + step));
-    if (event.altKey && may("editor")) context.move(n, to);
+    if (event.altKey && context.edits) context.move(n, to);
     else document.getElementById(`stop-${to}`).focus();
   });
-  button.draggable = may("editor");
+  button.draggable = context.edits;
   button.addEventListener("dragstart", event => { dragged = n; event.dataTransfer.setData("text/x-stop", String(n)); event.dataTransfer.effectAllowed = "move"; });
   button.addEventListener("dragend", () => { dragged = -1; });
   item.addEventListener("dragover", event => {
@@ -93,10 +92,13 @@ function row(stop, n, tour, context) {
   return item;
 }
 
-// context: chosen, language, languageName, parts ({id, title}), and what is done: changed(flies), choose(n), move(from,
-// to), look(n), set(n), remove(n).
+// context: chosen, language, languageName, parts ({id, title}), edits (may), and what is done: changed(flies), choose(n),
+// move(from, to), look(n), set(n), remove(n). Who is typing goes on typing, at the same place.
 export function showStops(tour, context) {
-  const focused = document.activeElement?.id;
+  const { id, dataset, selectionStart, selectionEnd } = document.activeElement, isHere = list.contains(document.activeElement);
   list.replaceChildren(...tour.stops.map((stop, n) => row(stop, n, tour, context)));
-  if (focused?.startsWith("stop-")) document.getElementById(focused)?.focus();
+  if (!isHere) return;
+  const again = id ? document.getElementById(id) : dataset.key && list.querySelector(`[data-key=${dataset.key}]`);
+  again?.focus();
+  if (Number.isInteger(selectionStart)) again?.setSelectionRange(selectionStart, selectionEnd);
 }

@@ -5,39 +5,48 @@ import { ask, loadSession, may } from "./api.js";
 import { Eye } from "./eye.js";
 import { versionsOf } from "./history.js";
 import { showStops } from "./stop_list.js";
+import { mergeTours, takeTheirs } from "./tour_merge.js";
 import { Player } from "./tour_player.js";
 
 const byId = id => document.getElementById(id);
 const TOURS_MAX = 8, STOPS_MAX = 64, FLIGHT_MS = 500;
-let information, tours = [], tag = "", tour = null, language = "", chosen = -1, dirty = false, saving = false;
-let flightTimer, asked = 0; // for the path of the tour as it is in the editor
+let information, tours = [], tour = null, language = "", chosen = -1, dirty = false, saving = false;
+let wanted = false;                     // to save again, once the save that is under way has ended
+let edits = false;                      // whether the role allowed it when the page was loaded
+let stored = "[]", tag = "", sent = ""; // the tours as they are in the file, its tag, and as they were sent last
+let clashes = [];                       // ids of tours that somebody else has changed too, in another way
+let flightTimer, asked = 0;             // for the path of the tour as it is in the editor
 
 const titleOf = one => information.languages.map(code => one.title?.[code]).find(Boolean) || one.id;
 const round = numbers => numbers.map(number => Math.round(number * 1000) / 1000);
 
-function tell(text, good = false, ...buttons) {
-  byId("message").replaceChildren(text, ...(buttons.length ? [document.createElement("br"), ...buttons] : []));
+function tell(text, good = false, ...more) {
+  byId("message").replaceChildren(text, ...more);
   byId("message").hidden = !text;
   byId("message").classList.toggle("good", good);
 }
 
+function showState(words) {
+  byId("state").textContent = words;
+}
+
 function setDirty(on) {
   dirty = on;
-  byId("save").disabled = !on || !may("editor");
-  byId("state").textContent = on ? "Not saved yet" : "";
+  byId("save").disabled = !on || !edits;
+  showState(on ? "Not saved yet" : "");
 }
 
 // ---- the eye
 
 const eye = new Eye(byId("stage"), [byId("picture")], byId("quality"), {
   text: message => {
-    if (message.type === "hello") { eye.begin(message); byId("keep").disabled = !tour || !may("editor"); if (tour) look(0); }
+    if (message.type === "hello") { eye.begin(message); byId("keep").disabled = !tour || !edits; if (tour) look(0); }
     else if (message.type === "point" && message.at) eye.lookAt(message.at);
   },
   moved: () => {},
   tell,
   press: () => player.pause(),
-  closed: wasOpen => { byId("state").textContent = wasOpen ? "Connection lost: reload the page." : "No connection: is gopura-curator running?"; },
+  closed: wasOpen => showState(wasOpen ? "Connection lost: reload the page." : "No connection: is gopura-curator running?"),
 });
 
 function look(n) {
@@ -92,7 +101,8 @@ function showTours() {
     item.append(button);
     return item;
   }));
-  byId("new-tour").disabled = !may("editor") || tours.length >= TOURS_MAX;
+  byId("attract").checked = tour?.attract === true;
+  byId("new-tour").disabled = !edits || tours.length >= TOURS_MAX;
 }
 
 function showLanguages() {
@@ -125,7 +135,7 @@ function show() {
   const is = Boolean(tour);
   byId("work").hidden = !is;
   byId("nothing").hidden = is;
-  byId("keep").disabled = !is || tour.scene || !eye.camera || !may("editor") || tour.stops.length >= STOPS_MAX;
+  byId("keep").disabled = !is || tour.scene || !eye.camera || !edits || tour.stops.length >= STOPS_MAX;
   showTours();
   if (!is) return;
   showLanguages();
@@ -134,9 +144,8 @@ function show() {
     byId(name).lang = language;
     byId(name).dir = "auto";
   }
-  byId("attract").checked = tour.attract === true;
   showStops(tour, {
-    chosen, language, languageName: new Intl.DisplayNames([], { type: "language" }).of(language),
+    chosen, edits, language, languageName: new Intl.DisplayNames([], { type: "language" }).of(language),
     parts: information.parts.map(part => ({ id: part.id, title: titleOf(part) })),
     changed, move, look,
     choose: n => { chosen = n; player.pause(); show(); byId(`stop-${n}`)?.focus(); if (n >= 0) look(n); },
@@ -155,9 +164,9 @@ function open(one) {
   if (tour) { history.replaceState(null, "", `#${tour.id}`); askFlight(); look(0); }
 }
 
-function freshId() {
-  for (let n = 1; ; n++) if (!tours.some(one => one.id === `tour-${n}`)) return `tour-${n}`;
-}
+// Of two who begin a tour at the same time each gets another one, and what links to a tour that was removed leads to no
+// newer one.
+const freshId = () => `tour-${Math.random().toString(36).slice(2, 8)}`;
 
 const present = () => ({ eye: round(eye.position), target: round(eye.camera.target) });
 
@@ -174,67 +183,120 @@ function keep() {
 
 // ---- loading and saving
 
-function take(answer) {
-  const id = tour?.id;
-  tours = answer.tours.map(one => ({ ...one, stops: Array.isArray(one.stops) ? one.stops : [] }));
-  tag = answer.tag;
-  tour = tours.find(one => one.id === id) || null;
-  if (tour && chosen >= tour.stops.length) chosen = -1;
-  setDirty(false);
+const read = answer => answer.tours.map(one => ({ ...one, stops: Array.isArray(one.stops) ? one.stops : [] }));
+
+// Where the chosen tour is the same object, what shows it stays untouched: somebody may be typing in it.
+function setTours(list) {
+  const was = tour;
+  tours = list;
+  tour = tours.find(one => one.id === was?.id) || null;
+  setDirty(JSON.stringify(tours) !== stored);
+  if (tour && tour === was) { showTours(); return; }
+  if (!tour) { open(tours.find(one => one.id === location.hash.slice(1)) || tours[0] || null); return; }
+  if (chosen >= tour.stops.length) chosen = -1;
   show();
-  if (tour) askFlight();
+  askFlight();
 }
 
-async function load() {
-  take(await ask("GET", "/api/tours"));
-  if (!tour && tours.length) open(tours.find(one => one.id === location.hash.slice(1)) || tours[0]);
-  else show();
+// Takes up what is in the file now, and keeps what was changed here since `base`.
+function meet(base, answer) {
+  const theirs = read(answer);
+  stored = JSON.stringify(theirs);
+  tag = answer.tag;
+  const both = mergeTours(JSON.parse(base), tours, theirs);
+  clashes = [...new Set([...clashes, ...both.clashes])];
+  setTours(both.tours);
+  showClashes();
+}
+
+function showClashes() {
+  const box = byId("clash"), theirs = JSON.parse(stored), button = Object.assign(document.createElement("button"), { type: "button", textContent: "Take theirs" });
+  box.hidden = !clashes.length;
+  if (box.hidden) return;
+  const names = clashes.map(id => `“${titleOf([...theirs, ...tours].find(one => one.id === id))}”`).join(", ");
+  button.addEventListener("click", () => {
+    if (!confirm(`What you changed of ${names} is then kept nowhere. Take theirs?`)) return;
+    setTours(takeTheirs(tours, theirs, clashes));
+    clashes = [];
+    showClashes();
+  });
+  box.replaceChildren(`Not saved: somebody else has changed ${names} meanwhile. Save again to put yours in the place of theirs, which stays in the history, or take theirs.`, document.createElement("br"), button);
+  box.scrollIntoView({ block: "center" });
+}
+
+const load = async base => meet(base, await ask("GET", "/api/tours"));
+
+// Saves, together with what somebody else has saved meanwhile. What is typed until the answer comes stays, and is then not
+// saved yet. Returns what came of it.
+async function put() {
+  for (let withOthers = false; ; ) {
+    const before = sent;
+    sent = JSON.stringify(tours);
+    try {
+      ({ tag } = await ask("PUT", "/api/tours", { tours: JSON.parse(sent) }, tag ? { "If-Match": `"${tag}"` } : { "If-None-Match": "*" }));
+      stored = sent;
+      return { withOthers, isSaved: true };
+    } catch (failure) {
+      if (failure.status !== 409 || !failure.answer?.tours) throw failure;
+      const own = [sent, before].find(one => one === JSON.stringify(read(failure.answer))); // saved, but the answer was lost
+      meet(own || stored, failure.answer);
+      if (clashes.length) return { isSaved: false };
+      withOthers ||= !own;
+    }
+  }
 }
 
 async function save() {
-  if (saving || !dirty || !may("editor")) return;
+  wanted = saving;
+  if (saving || !dirty || !edits) return;
   saving = true;
-  byId("state").textContent = "Saving …";
+  showState("Saving …");
   tell("");
+  clashes = []; // they were shown: mine are wanted
+  showClashes();
+  let isSaved = false, withOthers;
   try {
-    const answer = await ask("PUT", "/api/tours", { tours }, tag ? { "If-Match": `"${tag}"` } : { "If-None-Match": "*" });
-    take(answer);
-    byId("state").textContent = "Saved";
-    if (answer.merged) tell("Saved, together with what somebody else has changed in the tours meanwhile.", true);
-    if (byId("history-box").open) await showVersions();
+    ({ isSaved, withOthers } = await put());
+    setDirty(JSON.stringify(tours) !== stored);
+    if (!dirty) showState("Saved");
+    if (withOthers) tell("Saved, together with what somebody else has changed in the tours meanwhile.", true);
+    if (isSaved && byId("history-box").open) showVersions();
   } catch (failure) {
     setDirty(true);
     fail(failure);
   }
   saving = false;
+  if (isSaved && wanted) save();
 }
 
 function fail(failure) {
-  const answer = failure.answer;
-  if (failure.status === 409 && answer?.tours) {
-    const theirs = Object.assign(document.createElement("button"), { type: "button", textContent: "Take theirs" });
-    tag = answer.tag;
-    theirs.addEventListener("click", () => { tell(""); take(answer); });
-    tell("Somebody else has changed the same tour meanwhile. Take theirs, or save again to put yours in its place; the history keeps both.", false, theirs);
-  } else {
-    if (answer?.problems?.length) showProblems(answer.problems);
-    tell(answer?.problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
-  }
+  const problems = failure.answer?.problems;
+  if (problems?.length) showProblems(problems);
+  tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
   byId("message").scrollIntoView({ block: "center" });
 }
 
+// Somebody else may have saved since the page was loaded: nothing is then gone back to, and what is changed here stays.
+async function goBack(version) {
+  if (saving || (dirty && !confirm("What you changed is not saved, and would be lost. Go back all the same?"))) return;
+  const given = JSON.stringify(tours);
+  saving = true;
+  try {
+    const isStale = await ask("POST", "/api/restore", { document: "tours.json", version, tag })
+      .then(() => false, failure => { if (failure.status !== 412) throw failure; return true; });
+    if (!isStale) clashes = [];
+    await load(isStale ? stored : given);
+    await showVersions();
+    if (isStale) tell("Somebody else has saved tours meanwhile, as the history shows now. What you changed is still here. Go back again if you still want to.");
+    else tell("These are the old tours. They were saved as a new version, so nothing is lost.", true);
+  } catch (failure) {
+    fail(failure);
+  }
+  saving = false;
+}
+
 async function showVersions() {
-  byId("versions").replaceChildren(await versionsOf("tours.json", async version => {
-    try {
-      await ask("POST", "/api/restore", { document: "tours.json", version, tag });
-      setDirty(false);
-      await load();
-      await showVersions();
-      tell("These are the old tours. They were saved as a new version, so nothing is lost.", true);
-    } catch (failure) {
-      fail(failure);
-    }
-  }));
+  byId("versions").replaceChildren(await versionsOf("tours.json", goBack).catch(failure => failure.message));
 }
 
 // ---- setting up
@@ -297,11 +359,12 @@ addEventListener("beforeunload", event => { if (dirty) event.preventDefault(); }
 loadSession().then(async session => {
   if (session.role === "nobody") { location.assign("/sign-in"); return; }
   showAccount(session);
-  for (const name of ["title", "caption"]) byId(name).readOnly = !may("editor");
-  byId("attract").disabled = byId("remove").disabled = !may("editor");
+  edits = may("editor");
+  for (const name of ["title", "caption"]) byId(name).readOnly = !edits;
+  byId("attract").disabled = byId("remove").disabled = !edits;
   information = await ask("GET", "/api/information");
   language = information.languages[0];
   byId("name").textContent = information.name;
   eye.connect();
-  await load();
+  await load(stored);
 }).catch(failure => { byId("nothing").textContent = failure.message; });

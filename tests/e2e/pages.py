@@ -103,6 +103,28 @@ def check_pages(ana, petra):
     assert save(petra, PAGE, decided, answer["tag"])[0] == 200
 
 
+def check_tours(ana, petra):
+    """The second one who saves gets what the first one saved, and nothing is overwritten."""
+    put = lambda client, tours, **headers: client.ask("PUT", "/api/tours", json.dumps({"tours": tours}), **headers)
+    read = lambda: ana.ask("GET", "/api/tours")[2]
+    first = read()
+    of = lambda who: [{**first["tours"][0], "title": {"en": f"By {who}"}}, *first["tours"][1:]]
+    assert put(ana, of("Ana"))[0] == 428
+    status, _, answer = put(ana, of("Ana"), If_Match=f'"{first["tag"]}"')
+    assert status == 200 and answer == {"tag": read()["tag"]}, answer
+    for headers in ({"If_Match": f'"{first["tag"]}"'}, {"If_None_Match": "*"}):
+        status, _, answer = put(petra, of("Petra"), **headers)
+        assert status == 409 and answer["tours"] == of("Ana") and answer["tag"] == read()["tag"], answer
+    versions = ana.ask("GET", "/api/versions?document=tours.json")[2]["versions"]
+    assert post(petra, "/api/restore", document="tours.json", version=versions[-1]["version"], tag=first["tag"])[0] == 412
+    assert read()["tours"] == of("Ana")
+    assert put(petra, of("Petra"), If_Match=f'"{answer["tag"]}"')[0] == 200
+    status, _, answer = put(petra, [{"id": "one", "stops": []}], If_Match=f'"{read()["tag"]}"')
+    assert status == 422 and answer["problems"] and read()["tours"] == of("Petra")
+    assert post(petra, "/api/restore", document="tours.json", version=versions[-1]["version"], tag=read()["tag"])[0] == 200
+    assert read()["tours"] == first["tours"]
+
+
 def check_history(ana):
     document = "pages/lions.en.html"
     versions = ana.ask("GET", f"/api/versions?document={document}")[2]["versions"]
@@ -241,6 +263,7 @@ def main():
     check_texts(ana, petra)
     check_order(ana)
     check_pages(ana, petra)
+    check_tours(ana, petra)
     check_history(ana)
     check_pictures(ana)
     check_spoken(ana)
