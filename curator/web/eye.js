@@ -1,12 +1,12 @@
 // The model as the program draws it: the socket, the camera, and what turns it. The pages that show the model use it.
-import { loadSession, token } from "./api.js";
+import { ask, token } from "./api.js";
 
 const FOV_DEG = 40, PIXELS_MAX = 1.4e6, SIDE_MAX = 2048, REST_MS = 150;
 
 export class Eye {
   // canvases: the first gets the pictures, all get their size. on: text(message), moved(), tell(sentence),
-  // closed(wasOpen); perhaps press(event, fingers), drag(event, button), which returns true if it does not turn, and
-  // lift(event).
+  // closed(wasOpen); perhaps unsaved(), press(event, fingers), drag(event, button), which returns true if it does not turn,
+  // and lift(event).
   constructor(stage, canvases, quality, on) {
     Object.assign(this, { stage, canvases, quality, on, view: 0, sharpView: -1, camera: null, decoding: Promise.resolve(), pointers: new Map() });
     this.listen();
@@ -22,7 +22,8 @@ export class Eye {
     this.socket.onmessage = event => typeof event.data === "string" ? this.on.text(JSON.parse(event.data)) : this.show(event.data);
     this.socket.onclose = () => {
       this.on.closed(Boolean(this.camera));
-      loadSession().then(session => { if (session.role === "nobody") location.assign("/sign-in"); }).catch(() => {});
+      // What is not saved yet stays with the role that it was begun with: the server judges when it is saved.
+      ask("GET", "/api/session").then(({ role }) => { if (role === "nobody" && !this.on.unsaved?.()) location.assign("/sign-in"); }).catch(() => {});
     };
   }
 

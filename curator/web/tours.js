@@ -15,6 +15,7 @@ let wanted = false;                     // to save again, once the save that is 
 let edits = false;                      // whether the role allowed it when the page was loaded
 let stored = "[]", tag = "", sent = ""; // the tours as they are in the file, its tag, and as they were sent last
 let clashes = [];                       // ids of tours that somebody else has changed too, in another way
+let gone = "";                          // why there is no model
 let flightTimer, asked = 0;             // for the path of the tour as it is in the editor
 
 const titleOf = one => information.languages.map(code => one.title?.[code]).find(Boolean) || one.id;
@@ -27,7 +28,8 @@ function tell(text, good = false, ...more) {
 }
 
 function showState(words) {
-  byId("state").textContent = words;
+  const then = gone && (dirty ? `${gone} Save, then load the page again.` : `${gone} Load the page again.`);
+  byId("state").textContent = [words, then].filter(Boolean).join(". ");
 }
 
 function setDirty(on) {
@@ -42,11 +44,16 @@ const eye = new Eye(byId("stage"), [byId("picture")], byId("quality"), {
   text: message => {
     if (message.type === "hello") { eye.begin(message); byId("keep").disabled = !tour || !edits; if (tour) look(0); }
     else if (message.type === "point" && message.at) eye.lookAt(message.at);
+    else if (message.type === "error") tell(message.message);
   },
   moved: () => {},
   tell,
   press: () => player.pause(),
-  closed: wasOpen => showState(wasOpen ? "Connection lost: reload the page." : "No connection: is gopura-curator running?"),
+  unsaved: () => dirty,
+  closed: wasOpen => {
+    gone = wasOpen ? "The connection to the model is lost." : "There is no connection to the model.";
+    showState(dirty ? "Not saved yet" : "");
+  },
 });
 
 function look(n) {
@@ -272,7 +279,12 @@ async function save() {
 function fail(failure) {
   const problems = failure.answer?.problems;
   if (problems?.length) showProblems(problems);
-  tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
+  if (failure.status === 401) {
+    const link = Object.assign(document.createElement("a"), { href: "/sign-in", target: "_blank", textContent: "Sign in in another window" });
+    tell("Not saved: you are not signed in any more. ", false, link, ", then save here again.");
+  } else {
+    tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
+  }
   byId("message").scrollIntoView({ block: "center" });
 }
 

@@ -314,6 +314,33 @@ async function goesBack(ana, petra) {
   assert.ok(await ana.evaluate(`document.querySelector("#save").disabled`));
 }
 
+// The model may go: what is not saved can be saved all the same, and who was signed out is told so and stays.
+async function loses(browser, name) {
+  const { identifier } = await browser.send("Page.addScriptToEvaluateOnNewDocument", { source: `window.sockets = []; window.WebSocket = class extends WebSocket { constructor(...all) { super(...all); sockets.push(this); } };` });
+  await open(browser, "round");
+  await browser.until(`!document.querySelector("#keep").disabled`, "the model");
+  await fill(browser, "#caption", "Without a model.");
+  await browser.evaluate(`sockets[0].close()`);
+  await browser.until(`/Not saved yet.*Save, then load the page again/.test(document.querySelector("#state").textContent)`, "that the model is gone");
+  await save(browser);
+  assert.match(await text(browser, "#state"), /^Saved.*Load the page again/);
+  assert.equal((await tours(browser))[0].caption.en, "Without a model.");
+
+  await open(browser, "round");
+  await browser.until(`!document.querySelector("#keep").disabled`, "the model");
+  await fill(browser, "#caption", "Without a session.");
+  await browser.evaluate(`fetch("/api/session").then(answer => answer.json()).then(({ token }) => fetch("/api/session", { method: "DELETE", headers: { "X-Gopura-Token": token } }))`);
+  await browser.until(`/Save, then load/.test(document.querySelector("#state").textContent)`, "that the model is gone");
+  await browser.sleep(500); // a page that leaves has left by then
+  await browser.key("s", CONTROL, 83);
+  await browser.until(`/not signed in any more/.test(document.querySelector("#message").textContent)`, "why it is not saved");
+  assert.equal(await browser.evaluate(`document.querySelector("#message a").pathname`), "/sign-in");
+  assert.equal(await browser.evaluate(`document.querySelector("#caption").value`), "Without a session.");
+  assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), false);
+  await browser.send("Page.removeScriptToEvaluateOnNewDocument", { identifier });
+  await signIn(browser, name);
+}
+
 // A reader may look and play, and change nothing.
 async function reads(browser) {
   await signIn(browser, "rolf");
@@ -349,12 +376,13 @@ try {
   await types(ana, petra);
   await misses(ana);
   await goesBack(ana, petra);
+  await loses(ana, "ana");
   await open(ana, "round");
   await begins(ana);
   await reads(petra);
-  // The browser remarks on answers that the test provokes: 409 and 412 of the overlap, 422 of one stop, 403 of a
-  // reader.
-  const thrown = [...ana.complaints, ...petra.complaints].filter(one => !/status of (403|409|412|422)/.test(one));
+  // The browser remarks on answers that the test provokes: 409 and 412 of the overlap, 422 of one stop, 401 of who is
+  // signed out, 403 of a reader.
+  const thrown = [...ana.complaints, ...petra.complaints].filter(one => !/status of (401|403|409|412|422)/.test(one));
   assert.deepEqual(thrown, []);
 } finally {
   await ana.close();
