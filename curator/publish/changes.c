@@ -8,6 +8,7 @@
 #include "base/json_tree.h"
 #include "curator/publish/alt_texts.h"
 #include "curator/publish/info_difference.h"
+#include "format/hash.h"
 #include "pipeline/build.h"
 #include "pipeline/release/release_look.h"
 
@@ -52,6 +53,15 @@ static void add_bytes(cJSON *json, const struct buffer *now, const struct buffer
 				cJSON_GetNumberValue(pictures) + (same ? 0 : (double)now->size));
 }
 
+/* Equal texts, pictures and sounds give the same database, byte by byte. */
+static void add_content(cJSON *json, const struct buffer *now)
+{
+	char hex[HASH_HEX_BYTES];
+
+	hash_to_hex(hash_of(buffer_bytes(now)), hex);
+	cJSON_AddStringToObject(json, "content", hex);
+}
+
 static int compare(cJSON *json, const struct info_built *built, const struct release_place *place,
 		   struct diagnostics *diagnostics)
 {
@@ -66,8 +76,10 @@ static int compare(cJSON *json, const struct info_built *built, const struct rel
 		diagnostics_add(diagnostics, rc, place->folder, 0,
 				"the release cannot be compared: %s; see gopura-content verify",
 				strerror(-rc));
-	else
+	if (rc == 0) {
 		add_bytes(json, &built->database, &before);
+		add_content(json, &built->database);
+	}
 	buffer_finish(&before);
 	return rc;
 }

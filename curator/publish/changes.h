@@ -15,9 +15,10 @@ struct cJSON;
  *                      hierarchy was made, so that a build takes long
  *   undescribed        [{"file", "line", "picture"}]: pictures without an alternative text
  *
- * and, if there are no errors, what info_difference adds, and bytes: how much terminals would fetch
- * for the texts and pictures. Takes seconds, and where a list of faces or the way of a tour is new
- * the memory of the scans. Negative errno, with a diagnostic. */
+ * and, if there are no errors, what info_difference adds; bytes, how much terminals would fetch for
+ * the texts and pictures; and content, a name for all that would be published but the model. Takes
+ * seconds, and where a list of faces or the way of a tour is new the memory of the scans. Negative
+ * errno, with a diagnostic. */
 must_check int changes_find(struct cJSON **out, const char *folder, const char *release,
 			    struct diagnostics *diagnostics);
 

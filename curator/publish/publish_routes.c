@@ -44,27 +44,34 @@ static bool has_release(const struct publish_place *place, struct api_response *
 	return place->release != NULL;
 }
 
-static void get_changes(void *user, const struct api_request *request,
-			struct api_response *response)
+/* Returns what changes_find gives; NULL, and an answer, on failure. */
+static cJSON *find_changes(struct publish_place *place, struct api_response *response)
 {
-	struct publish_place *place = user;
 	struct diagnostics diagnostics = { 0 };
 	cJSON *json;
 	int rc;
 
-	(void)request;
-	if (!has_release(place, response))
-		return;
 	if (pthread_mutex_trylock(&place->comparing) != 0) {
 		api_fail(response, 503, "somebody else is looking at the changes: try again");
 		api_add_header(response, "retry-after:", "1");
-		return;
+		return NULL;
 	}
 	rc = changes_find(&json, place->folder, place->release, &diagnostics);
 	pthread_mutex_unlock(&place->comparing);
 	if (rc < 0)
 		api_fail_with(response, rc, &diagnostics);
-	else
+	return json;
+}
+
+static void get_changes(void *user, const struct api_request *request,
+			struct api_response *response)
+{
+	cJSON *json = NULL;
+
+	(void)request;
+	if (has_release(user, response))
+		json = find_changes(user, response);
+	if (json)
 		api_send_json(response, json);
 }
 
@@ -164,11 +171,16 @@ static void get_publish(void *user, const struct api_request *request,
 
 /* ---- a request */
 
-static bool parse_wish(struct publish_request *out, const cJSON *json)
+/* *content, which is json's, is that which somebody has looked at; NULL: not said. */
+static bool parse_wish(struct publish_request *out, const char **content, const cJSON *json)
 {
 	const cJSON *comment = cJSON_GetObjectItemCaseSensitive(json, "comment"),
-		    *sequence = cJSON_GetObjectItemCaseSensitive(json, "sequence");
+		    *sequence = cJSON_GetObjectItemCaseSensitive(json, "sequence"),
+		    *seen = cJSON_GetObjectItemCaseSensitive(json, "content");
 
+	*content = cJSON_GetStringValue(seen);
+	if (seen && !*content)
+		return false;
 	if (!cJSON_IsString(comment) || !publish_comment_is_valid(comment->valuestring))
 		return false;
 	memcpy(out->comment, comment->valuestring, strlen(comment->valuestring) + 1);
@@ -179,6 +191,32 @@ static bool parse_wish(struct publish_request *out, const cJSON *json)
 		return false;
 	out->sequence = (uint64_t)sequence->valuedouble;
 	return true;
+}
+
+/* Returns whether the content is what somebody has looked at; if not, the answer has the changes as
+ * they are now. */
+static bool is_as_seen(struct publish_place *place, const char *content,
+		       struct api_response *response)
+{
+	cJSON *json, *changes = find_changes(place, response);
+	const char *now;
+
+	if (!changes)
+		return false;
+	now = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(changes, "content"));
+	if (now && strcmp(now, content) == 0) {
+		cJSON_Delete(changes);
+		return true;
+	}
+	json = cJSON_CreateObject();
+	cJSON_AddStringToObject(
+		json, "message",
+		"the content has been changed since these changes were listed: look "
+		"at them again, then publish");
+	json_add(json, "changes", changes);
+	response->status = 409;
+	api_send_json(response, json);
+	return false;
 }
 
 /* Under the lock. Negative errno, with a diagnostic. */
@@ -207,38 +245,44 @@ static int ask(const struct publish_place *place, struct publish_request *wish,
 	return rc;
 }
 
-static void post_publish(void *user, const struct api_request *request,
-			 struct api_response *response)
+static void make_wish(struct publish_place *place, struct publish_request *wish,
+		      struct api_response *response)
 {
-	struct publish_place *place = user;
 	struct diagnostics diagnostics = { 0 };
-	struct publish_request wish = { .at_s = clock_wall_s() };
-	cJSON *json;
-	bool good;
 	int rc;
 
-	if (!has_release(place, response) || api_read_json(request, response, &json) < 0)
-		return;
-	good = parse_wish(&wish, json);
-	cJSON_Delete(json);
-	if (!good) {
-		api_fail(response, 422,
-			 "\"comment\" is one line of at most %d bytes, and \"sequence\" the number "
-			 "of a release",
-			 PUBLISH_COMMENT_BYTES - 1);
-		return;
-	}
-	memcpy(wish.by, request->caller.name, sizeof(wish.by));
 	pthread_mutex_lock(&place->asking);
-	rc = ask(place, &wish, &diagnostics);
+	rc = ask(place, wish, &diagnostics);
 	pthread_mutex_unlock(&place->asking);
 	if (rc < 0) {
 		api_fail_with(response, rc, &diagnostics);
 		return;
 	}
-	log_info("curator", "%s asks to publish", wish.by);
+	log_info("curator", "%s asks to publish", wish->by);
 	response->status = 202;
 	api_send_json(response, cJSON_CreateObject());
+}
+
+static void post_publish(void *user, const struct api_request *request,
+			 struct api_response *response)
+{
+	struct publish_place *place = user;
+	struct publish_request wish = { .at_s = clock_wall_s() };
+	const char *content;
+	cJSON *json;
+
+	if (!has_release(place, response) || api_read_json(request, response, &json) < 0)
+		return;
+	memcpy(wish.by, request->caller.name, sizeof(wish.by));
+	if (!parse_wish(&wish, &content, json))
+		api_fail(
+			response, 422,
+			"\"comment\" is one line of at most %d bytes, \"sequence\" the number of a "
+			"release, and \"content\" that of its changes",
+			PUBLISH_COMMENT_BYTES - 1);
+	else if (!content || wish.sequence > 0 || is_as_seen(place, content, response))
+		make_wish(place, &wish, response);
+	cJSON_Delete(json);
 }
 
 struct api_routes publish_routes(struct publish_place *place)

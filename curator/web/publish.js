@@ -4,6 +4,7 @@ import { ask, may } from "./api.js";
 const byId = id => document.getElementById(id);
 const POLL_MS = 1000;
 let poll = 0, changes = null, state = null;
+let refused = ""; // why the last request was not taken
 
 function element(name, text = "", className = "") {
   const made = document.createElement(name);
@@ -123,7 +124,7 @@ function showState() {
   if (line.textContent !== text) line.textContent = text; // a screen reader says only what is new
   line.className = `state ${kind}`;
   const problem = !state.publisher && !isPending() ? "The publisher does not run, so nothing can be published now." :
-    !state.publisher ? "The publisher does not run: the request waits for it." : !may("publisher") ? "Only publishers can publish." : "";
+    !state.publisher ? "The publisher does not run: the request waits for it." : !may("publisher") ? "Only publishers can publish." : refused;
   byId("publish-problem").textContent = problem;
   byId("publish-problem").hidden = !problem;
   const last = (state.log || "").trimEnd().split("\n").pop();
@@ -177,12 +178,17 @@ async function loadState() {
 // ---- asking for it
 
 async function send(wish) {
+  refused = "";
   try {
     await ask("POST", "/api/publish", wish);
     byId("publish-comment").value = "";
   } catch (failure) {
-    byId("publish-problem").textContent = sentence(failure.message);
-    byId("publish-problem").hidden = false;
+    refused = sentence(failure.message);
+    if (failure.answer?.changes) { // somebody has saved since they were looked at
+      changes = failure.answer.changes;
+      showChanges();
+    }
+    showState();
     return;
   }
   await loadState();
@@ -203,6 +209,7 @@ export function setUpPublishing() {
   byId("open-publish").hidden = false;
   const open = () => {
     byId("publish").showModal();
+    refused = "";
     loadState();
     loadChanges();
   };
@@ -215,6 +222,6 @@ export function setUpPublishing() {
   byId("close-publish").addEventListener("click", () => byId("publish").close());
   byId("publish-form").addEventListener("submit", event => {
     event.preventDefault();
-    if (!byId("publish-now").disabled) send({ comment: byId("publish-comment").value.trim() });
+    if (!byId("publish-now").disabled) send({ comment: byId("publish-comment").value.trim(), content: changes.content });
   });
 }

@@ -44,6 +44,15 @@ def sign_in(page, address, name, folder):
     page.wait("location.pathname === '/' && document.getElementById('who')?.textContent")
 
 
+def change_title(page, title):
+    """As somebody else would, beside what the page shows."""
+    page.run(f"""(async () => {{
+      const {{ token }} = await (await fetch("/api/session")).json(), [part] = (await (await fetch("/api/information")).json()).parts;
+      const changes = [{{ field: "title", language: "en", from: part.title.en, to: {title!r} }}];
+      return (await fetch(`/api/parts/${{part.id}}/texts`, {{ method: "POST", headers: {{ "Content-Type": "application/json", "X-Gopura-Token": token }}, body: JSON.stringify({{ changes }}) }})).status;
+    }})()""")
+
+
 def check_publish(page, folder):
     """The panel by keyboard: it compares, publishes, goes back, and closes by Escape."""
     page.run("document.getElementById('open-publish').focus()")
@@ -53,6 +62,13 @@ def check_publish(page, folder):
     shots(page, folder, "publish")
     page.run("document.getElementById('publish-comment').focus()")
     page.type("what is new")
+    change_title(page, "Changed meanwhile")
+    page.press("Enter", "\r")
+    page.wait("document.getElementById('publish-problem').textContent.includes('look at them again')")
+    page.wait("document.getElementById('changes').textContent.includes('Changed meanwhile')")
+    page.complaints.clear()  # that the program answered 409
+    assert page.run("!document.getElementById('publish-now').disabled"), "it publishes"
+    assert page.run("document.getElementById('publish-comment').value") == "what is new"
     page.press("Enter", "\r")
     page.wait("document.getElementById('publish-state').className.includes('good')", 120)
     page.wait("document.getElementById('changes').textContent.includes('Nothing has changed')")

@@ -159,13 +159,31 @@ def check_wishes(ana, petra):
     """Only publishers publish, and only what can be published."""
     assert ana.ask("POST", "/api/publish", '{"comment": ""}')[0] == 403
     for body in ("{}", '{"comment": 5}', '{"comment": "two\\nlines"}', '{"comment": "' + "x" * 200 + '"}',
-                 '{"comment": "", "sequence": 0}', '{"comment": "", "sequence": "1"}'):
+                 '{"comment": "", "sequence": 0}', '{"comment": "", "sequence": "1"}',
+                 '{"comment": "", "content": 5}'):
         assert petra.ask("POST", "/api/publish", body)[0] == 422, body
     assert petra.ask("GET", "/api/publish")[2]["step"] == "idle"
 
 
+def check_seen(work, ana, petra):
+    """What somebody has saved since the changes were looked at is not published unseen."""
+    ask = lambda content: petra.ask("POST", "/api/publish", json.dumps({"comment": "", "content": content}))
+    page, looks = work / "content/pages/tower.en.html", lambda: ana.ask("GET", "/api/changes")[2]
+    seen, text = looks(), page.read_text()
+    assert looks()["content"] == seen["content"]
+    page.write_text(text.replace("Another", "Anothe~"))  # as long, in a page that had been changed before
+    status, _, answer = ask(seen["content"])
+    assert status == 409 and answer["changes"] == looks() and answer["message"], answer
+    assert answer["changes"]["pages"] == seen["pages"] and answer["changes"]["content"] != seen["content"], answer
+    page.write_text("<p><a href='part:nothing'>There</a></p>")
+    status, _, answer = ask(answer["changes"]["content"])
+    assert status == 409 and answer["changes"]["errors"] and "content" not in answer["changes"], answer
+    page.write_text(text)
+    assert looks() == seen and petra.ask("GET", "/api/publish")[2]["step"] == "idle"
+
+
 def check_releases(work, petra):
-    publish(petra, "--out is no option here")
+    publish(petra, "--out is no option here", content=petra.ask("GET", "/api/changes")[2]["content"])
     assert petra.ask("POST", "/api/publish", '{"comment": ""}')[0] == 409
     state = settled(petra)
     assert state["step"] == "done" and (state["before"], state["after"]) == (1, 2), state
@@ -249,6 +267,7 @@ def check(desk, work, kills, seed):
     check_users(desk, work)
     check_changes(work, ana)
     check_wishes(ana, petra)
+    check_seen(work, ana, petra)
     check_releases(work, petra)
     check_page(desk, work)
     check_kills(desk, work, kills, seed)
