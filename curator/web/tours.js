@@ -79,9 +79,11 @@ async function askFlight() {
   showProblems(flight.problems);
 }
 
-function showProblems(list) {
-  const name = `tour "${tour?.id}"`, about = list.filter(one => one.error ? one.file !== "tours.json" || one.text.includes(name) || !one.text.startsWith("tour ") : one.text.includes(name));
-  byId("problems").replaceChildren(...about.map(problem => Object.assign(document.createElement("li"), { className: problem.error ? "error" : "", textContent: problem.text.replace(`${name}, `, "").replace(`${name}: `, "") })));
+// Of the chosen tour, and of no tour; ofAll: of the others too, by their titles.
+function showProblems(list, ofAll = false) {
+  const name = `tour "${tour?.id}"`, about = list.filter(one => ofAll || (one.error ? one.file !== "tours.json" || one.text.includes(name) || !one.text.startsWith("tour ") : one.text.includes(name)));
+  const words = text => tours.reduce((said, one) => said.replace(`tour "${one.id}"`, `“${titleOf(one)}”`), text.replace(`${name}, `, "").replace(`${name}: `, ""));
+  byId("problems").replaceChildren(...about.map(problem => Object.assign(document.createElement("li"), { className: problem.error ? "error" : "", textContent: words(problem.text) })));
 }
 
 function flySoon() {
@@ -278,7 +280,7 @@ async function save() {
 
 function fail(failure) {
   const problems = failure.answer?.problems;
-  if (problems?.length) showProblems(problems);
+  if (problems?.length) showProblems(problems, true);
   if (failure.status === 401) {
     const link = Object.assign(document.createElement("a"), { href: "/sign-in", target: "_blank", textContent: "Sign in in another window" });
     tell("Not saved: you are not signed in any more. ", false, link, ", then save here again.");

@@ -248,6 +248,11 @@ async function begins(browser) {
   await browser.click("#save");
   await browser.until(`/Not saved/.test(document.querySelector("#message").textContent)`, "the refusal");
   assert.match(await text(browser, "#problems"), /needs 2 to 64/);
+  await browser.click("#tour-list button");
+  await browser.evaluate(`document.querySelector("#save").click()`);
+  await browser.until(`/Not saved/.test(document.querySelector("#message").textContent)`, "the refusal");
+  assert.match(await text(browser, "#problems"), /A short way.*needs 2 to 64/, "that of another tour is shown too");
+  await browser.evaluate(`[...document.querySelectorAll("#tour-list button")].pop().click()`);
   await browser.evaluate(`document.querySelector("#stage").focus()`);
   await browser.key("ArrowLeft", 0, 37);
   await browser.key("k", 0, 75);
