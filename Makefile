@@ -278,6 +278,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BENCH_PARTS) $(ARCHIVE) |
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
 $(BUILD)/tests/pipeline/release/test_publish: EXTRA += -Wl,--wrap=fsync,--wrap=rename
+$(BUILD)/tests/pipeline/release/test_renewal: EXTRA += -Wl,--wrap=clock_wall_s
 $(BUILD)/tests/pipeline/keys/test_keys $(BUILD)/tests/pipeline/keys/test_keys_exchange: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
 $(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw gl_place_bind gl_target_bind fingers_on_touch)
 $(BUILD)/tests/curator/store/test_documents: EXTRA += -Wl,--wrap=rename,--wrap=fsync

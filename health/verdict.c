@@ -213,13 +213,14 @@ static void judge_trust(struct verdict *verdict, const struct snapshot *snapshot
 		verdict, snapshot, "gopura_kiosk_trust_release_expires_at_seconds", 30,
 		"The release must be signed again",
 		"When it has expired, new terminals do not take it; this one goes on showing it. "
-		"Publish again.");
+		"Sign it anew by gopura-content publish --renew, and where several teams publish, "
+		"the museum's list of them by gopura-content delegate --renew (docs/tuf.md).");
 	judge_expiry(
 		verdict, snapshot, "gopura_kiosk_trust_timestamp_expires_at_seconds", 3,
 		"The publisher's timestamp is old",
 		"This terminal goes on showing what it has. If it has a network, the publisher "
-		"has not signed for long: gopura-content publish signs a new timestamp. If it "
-		"has none, a stick with the release brings it (docs/release.md).");
+		"has not signed for long: gopura-content publish --renew signs a new timestamp. "
+		"If it has none, a stick with the release brings it (docs/release.md).");
 }
 
 static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)

@@ -129,8 +129,8 @@ static struct stamp_file stamp_text(struct hash stamp, struct hash root)
 	return file;
 }
 
-/* Returns true if the current release was built from exactly these inputs and is complete. Its
- * timestamp is then renewed. */
+/* Returns true if the current release was built from exactly these inputs and is complete. What
+ * runs out of it is then signed anew. */
 static bool is_built(struct build_report *report, const char *stamp_path, struct hash stamp,
 		     const struct publish_content_options *publish)
 {

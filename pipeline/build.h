@@ -21,7 +21,7 @@ struct build_options {
 enum build_stage { BUILD_SURFACE, BUILD_HIERARCHY, BUILD_SAMPLES, BUILD_PUBLISHING, BUILD_STAGES };
 
 struct build_report {
-	bool nothing_changed; /* since the last build; only the timestamp is new */
+	bool nothing_changed; /* since the last build; only signatures are new */
 	struct report_stage stages[BUILD_STAGES];
 	int64_t all_ms;
 	char page[CONTENT_PATH_BYTES]; /* the report for people; "" if it was not written */

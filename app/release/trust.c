@@ -100,7 +100,7 @@ int trust_timestamp(struct trust *trust, struct bytes file, struct trust_time ti
 	if (has_expired(time, trust->root.expires_s))
 		return refuse(-EKEYEXPIRED, why, "the trust root has expired: sign root/N+1.json");
 	if (has_expired(time, timestamp.expires_s))
-		return refuse(-EKEYEXPIRED, why, "timestamp.json has expired: sign a new one");
+		return refuse(-EKEYEXPIRED, why, "timestamp.json has expired: publish --renew");
 	if (timestamp.sequence < trust->sequence_floor ||
 	    (trust->have_timestamp && timestamp.sequence < trust->timestamp.sequence))
 		return refuse(-ESTALE, why, "timestamp.json is older than what was seen before");
@@ -117,7 +117,7 @@ static int judge(const struct trust *trust, struct trust_time time, const struct
 	if (release->sequence < trust->sequence_floor)
 		return refuse(-ESTALE, why, "release.json is older than the release that is shown");
 	if (has_expired(time, release->expires_s))
-		return refuse(-EKEYEXPIRED, why, "release.json has expired: publish again");
+		return refuse(-EKEYEXPIRED, why, "release.json has expired: publish --renew");
 	return release->sequence > trust->sequence_floor ? 1 : 0;
 }
 

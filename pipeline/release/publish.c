@@ -134,27 +134,63 @@ static int sign(struct publish_report *report, const struct publish_target *targ
 	return rc;
 }
 
-int publish_renew(const struct publish_target *target)
+static int renew_timestamp(const struct publish_target *target, const struct release *current)
 {
 	const struct tuf_place place = published_place(target);
-	struct release current;
+	struct release same;
 	struct buffer file;
 	int rc;
 
 	if (target->tuf_alone) {
 		buffer_init(&file, METADATA_FILE_BYTES_MAX);
-		rc = published_file(&place, &current, &file);
+		rc = published_file(&place, &same, &file);
 		if (rc == 0)
-			rc = release_tuf_write(&place, &current, buffer_bytes(&file),
+			rc = release_tuf_write(&place, &same, buffer_bytes(&file),
 					       timestamp_life_s(target), target->unsigned_folder);
 		buffer_finish(&file);
 		return rc;
 	}
 	rc = release_files_renew(target->release, target->keys_folder, target->keys,
 				 timestamp_life_s(target));
+	return rc < 0 ? rc : sign_tuf(target, current);
+}
+
+/* Signs the current release under the next number, so that it is valid for its whole life again.
+ * Terminals that show it have nothing to load. */
+static int renew_release(struct publish_report *report, const struct publish_target *target,
+			 const struct release *current)
+{
+	const struct page_child root = { .hash = current->root, .size = current->root_bytes };
+	struct publish_target again = *target;
+	int rc;
+
+	again.comment = current->comment;
+	rc = sign(report, &again, &root, published_next(target, current->sequence));
 	if (rc == 0)
-		rc = published_current(target, &current);
-	return rc < 0 ? rc : sign_tuf(target, &current);
+		log_info("pipeline",
+			 "release %" PRIu64 " has less than two fifths of its life left, so it is "
+			 "signed again as release %" PRIu64,
+			 current->sequence, report->release.sequence);
+	return rc;
+}
+
+int publish_renew(struct publish_report *report, const struct publish_target *target)
+{
+	const int64_t life_s = life_or(target->release_life_s, RELEASE_LIFE_DAYS);
+	int64_t expires_s;
+	int rc = published_current(target, &report->release);
+
+	report->changed = false;
+	if (rc == 0)
+		rc = published_expires_s(target, &report->release, &expires_s);
+	if (rc < 0)
+		return rc;
+	if (expires_s - clock_wall_s() < life_s / 5 * 2) {
+		const struct release current = report->release;
+
+		return renew_release(report, target, &current);
+	}
+	return renew_timestamp(target, &report->release);
 }
 
 static int make_root(struct page_child *out, struct object_store *objects,
@@ -246,7 +282,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 	if (rc < 0)
 		return rc;
 	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
-		return publish_renew(target);
+		return publish_renew(report, target);
 	return sign(report, target, &page, published_next(target, before.sequence));
 }
 

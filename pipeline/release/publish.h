@@ -36,8 +36,8 @@ struct publish_report {
 
 /* Publishes a release. children: the pages of hierarchy, samples, information and, if there are
  * any, labels, and what root->has_solid and root->has_stream announce; objects holds them and
- * everything below them. If nothing changed and there is no new comment, only the timestamp is
- * renewed. Errors are logged. */
+ * everything below them. If nothing changed and there is no new comment, what runs
+ * out is renewed: publish_renew. Errors are logged. */
 must_check int publish_parts(struct publish_report *report, const struct publish_target *target,
 			     struct object_store *objects, const struct root_page *root,
 			     const struct page_child *children, uint32_t child_count);
@@ -48,8 +48,10 @@ must_check int publish_parts(struct publish_report *report, const struct publish
 must_check int publish_again(struct publish_report *report, const struct publish_target *target,
 			     uint64_t sequence);
 
-/* Writes a new timestamp for the current release. */
-must_check int publish_renew(const struct publish_target *target);
+/* Signs anew what runs out: the timestamp; and with less than two fifths of its life left, which is
+ * release_life_s, the release itself, under the next sequence. Only release and changed of *report
+ * are set. Returns -ENOENT if nothing was published yet. */
+must_check int publish_renew(struct publish_report *report, const struct publish_target *target);
 
 /* Creates the folder "a/b/c" and all folders above it. Errors are logged. */
 must_check int publish_make_folder(const char *path);

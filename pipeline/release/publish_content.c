@@ -295,7 +295,7 @@ static int look_at_current(struct publish_content_report *report,
 	if (rc == 0)
 		rc = measure(report);
 	if (rc == 0 && renew)
-		rc = publish_renew(&destination.target);
+		rc = publish_renew(&report->publish, &destination.target);
 	keys_finish(&destination.keys);
 	return rc;
 }

@@ -45,8 +45,8 @@ must_check int publish_content_again(struct publish_content_report *report,
 /* Reports the current release; nothing is published. Returns -ENOENT as below. */
 must_check int publish_content_current(struct publish_content_report *report,
 				       const struct publish_content_options *options);
-/* Writes only a new timestamp. Returns -ENOENT if nothing was published there, or some of its packs
- * are missing. */
+/* Signs anew what runs out: see publish_renew. Returns -ENOENT if nothing was published there, or
+ * some of its packs are missing. */
 must_check int publish_content_renew(struct publish_content_report *report,
 				     const struct publish_content_options *options);
 

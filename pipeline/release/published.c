@@ -46,6 +46,28 @@ int published_current(const struct publish_target *target, struct release *out)
 	return rc;
 }
 
+static int64_t earlier(int64_t expires_s, const struct tuf_file *file)
+{
+	return file->json && file->expires_s < expires_s ? file->expires_s : expires_s;
+}
+
+int published_expires_s(const struct publish_target *target, const struct release *current,
+			int64_t *out)
+{
+	const struct tuf_place place = published_place(target);
+	struct tuf_folder folder;
+	uint32_t root;
+	int rc = keys_last_tuf_root(&root, target->keys_folder);
+
+	*out = current->expires_s;
+	if (rc < 0 || root == 0)
+		return rc;
+	rc = tuf_folder_open(&folder, &place);
+	*out = earlier(earlier(*out, tuf_folder_naming(&folder)), &folder.snapshot);
+	tuf_folder_finish(&folder);
+	return rc;
+}
+
 /* Reads the release of a version, or with before the newest one below it with another root. */
 static int look_back(const struct tuf_place *place, uint64_t version, const struct release *before,
 		     struct release *out)

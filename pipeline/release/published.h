@@ -18,6 +18,11 @@ must_check int published_at(const struct publish_target *target, uint64_t sequen
 must_check int published_before(const struct publish_target *target, const struct release *current,
 				struct release *out);
 
+/* Finds when terminals begin to refuse the current release, with whatever names it but the
+ * timestamp. Errors are logged. */
+must_check int published_expires_s(const struct publish_target *target,
+				   const struct release *current, int64_t *out);
+
 /* Returns the sequence of the next release: above that of the current one, and above the versions
  * of what others published in its place. */
 uint64_t published_next(const struct publish_target *target, uint64_t current);

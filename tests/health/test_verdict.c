@@ -177,12 +177,14 @@ static void a_clock_that_nobody_set_is_a_remark_after_a_quarter_of_an_hour(void 
 static void says_days_before_what_must_be_signed_anew(void **state)
 {
 	static const struct {
-		const char *name, *what;
+		const char *name, *what, *cure;
 		int days;
 	} files[] = {
-		{ "gopura_kiosk_trust_root_expires_at_seconds", "trust root", 60 },
-		{ "gopura_kiosk_trust_release_expires_at_seconds", "release must be signed", 30 },
-		{ "gopura_kiosk_trust_timestamp_expires_at_seconds", "timestamp is old", 3 },
+		{ "gopura_kiosk_trust_root_expires_at_seconds", "trust root", "next root", 60 },
+		{ "gopura_kiosk_trust_release_expires_at_seconds", "release must be signed",
+		  "delegate --renew", 30 },
+		{ "gopura_kiosk_trust_timestamp_expires_at_seconds", "timestamp is old",
+		  "publish --renew", 3 },
 	};
 	char line[96];
 
@@ -197,6 +199,7 @@ static void says_days_before_what_must_be_signed_anew(void **state)
 		change(&snapshot, PROGRAM_KIOSK, files[i].name, line);
 		CHECK(finds(LEVEL_WARNING, files[i].what));
 		CHECK(strstr(verdict.findings[0].detail, " days left."));
+		CHECK(strstr(verdict.findings[0].action, files[i].cure));
 		snprintf(line, sizeof(line), "%s %d", files[i].name, NOW_S - 3 * 86400);
 		change(&snapshot, PROGRAM_KIOSK, files[i].name, line);
 		CHECK(finds(LEVEL_WARNING, files[i].what));

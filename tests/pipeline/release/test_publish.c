@@ -144,6 +144,7 @@ static void a_change_adds_only_what_changed(void **state)
 static void no_two_timestamps_are_of_one_second(void **state)
 {
 	const struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
 	time_t before = 0;
 	char path[PATH_MAX];
 
@@ -153,7 +154,7 @@ static void no_two_timestamps_are_of_one_second(void **state)
 	for (int i = 0; i < 5; i++) {
 		struct stat status;
 
-		CHECK(publish_renew(&target) == 0);
+		CHECK(publish_renew(&report, &target) == 0);
 		CHECK(stat(path, &status) == 0 && status.st_mtim.tv_sec > before);
 		before = status.st_mtim.tv_sec;
 	}

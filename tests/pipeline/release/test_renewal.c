@@ -1,0 +1,133 @@
+/* What becomes of a release that nobody changes for years. */
+#include "base/clock.h"
+#include "pipeline/keys/keys_tuf.h"
+#include "pipeline/release/publish.h"
+#include "pipeline/release/published.h"
+#include "pipeline/release/verify.h"
+#include "tests/pipeline/release/tiny_fixture.h"
+
+enum { DAY_S = 86400 };
+
+static int64_t ahead_s; /* of the machine's clock */
+
+int64_t __real_clock_wall_s(void);
+int64_t __wrap_clock_wall_s(void);
+
+int64_t __wrap_clock_wall_s(void)
+{
+	return __real_clock_wall_s() + ahead_s;
+}
+
+static void go_to_day(int day)
+{
+	ahead_s = (int64_t)day * DAY_S;
+}
+
+static int enter(void **state)
+{
+	ahead_s = 0;
+	return set_up(state);
+}
+
+/* As a client without anything would, by the clock of this test. */
+static void check_valid(uint64_t sequence)
+{
+	const struct release_reader_options options = { .place = tiny.release };
+	struct verify_options verify = { .now_s = clock_wall_s() };
+	struct verify_report report;
+
+	CHECK(release_reader_create(&verify.reader, &options) == 0);
+	if (verify_release(&report, &verify) < 0)
+		fail_msg("%s", report.diagnostics.first.text);
+	CHECK(report.release.sequence == sequence);
+	release_reader_destroy(verify.reader);
+}
+
+static void publishing_what_has_not_changed_signs_it_again_in_time(void **state)
+{
+	const struct publish_report first = tiny_publish(&tiny, "the first");
+	struct publish_report again;
+
+	(void)state;
+	go_to_day(RELEASE_LIFE_DAYS * 3 / 5 - 1);
+	again = tiny_publish(&tiny, NULL);
+	CHECK(!again.changed && again.release.sequence == 1);
+	go_to_day(RELEASE_LIFE_DAYS * 3 / 5 + 1);
+	again = tiny_publish(&tiny, NULL);
+	CHECK(again.changed && again.release.sequence == 2 && again.packs.packs_written == 0);
+	CHECK(hash_equal(again.release.root, first.release.root));
+	CHECK(strcmp(again.release.comment, "the first") == 0);
+	CHECK(again.release.expires_s >= clock_wall_s() + (int64_t)RELEASE_LIFE_DAYS * DAY_S - 60);
+	again = tiny_publish(&tiny, NULL);
+	CHECK(!again.changed && again.release.sequence == 2);
+	check_valid(2);
+}
+
+static void a_nightly_renewal_keeps_a_release_valid_for_ever(void **state)
+{
+	const struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+
+	(void)state;
+	tiny_publish(&tiny, NULL);
+	for (int day = 0; day < 20 * 365; day += 20) {
+		go_to_day(day);
+		CHECK(publish_renew(&report, &target) == 0);
+		check_valid(report.release.sequence);
+	}
+	CHECK(report.release.sequence == 7);
+}
+
+static void a_release_that_lives_for_weeks_is_not_signed_each_night(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+
+	(void)state;
+	target.release_life_s = 30 * DAY_S;
+	tiny_publish(&tiny, NULL);
+	CHECK(publish_again(&report, &target, 1) == 0 && report.release.sequence == 2);
+	for (int day = 0; day < 60; day++) {
+		go_to_day(day);
+		CHECK(publish_renew(&report, &target) == 0);
+		check_valid(report.release.sequence);
+	}
+	CHECK(report.release.sequence == 5);
+}
+
+/* In both forms first, then in that one alone. */
+static void metadata_of_the_update_framework_is_signed_again_with_it(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+	int64_t expires_s;
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		ahead_s += (RELEASE_LIFE_DAYS * 3 / 5 + 1) * (int64_t)DAY_S;
+		CHECK(publish_renew(&report, &target) == 0 && report.changed);
+		CHECK(published_expires_s(&target, &report.release, &expires_s) == 0);
+		CHECK(expires_s >= clock_wall_s() + (int64_t)RELEASE_LIFE_DAYS * DAY_S - 60);
+		CHECK(publish_renew(&report, &target) == 0 && !report.changed);
+		check_valid(report.release.sequence);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(
+			publishing_what_has_not_changed_signs_it_again_in_time, enter, tear_down),
+		cmocka_unit_test_setup_teardown(a_nightly_renewal_keeps_a_release_valid_for_ever,
+						enter, tear_down),
+		cmocka_unit_test_setup_teardown(
+			a_release_that_lives_for_weeks_is_not_signed_each_night, enter, tear_down),
+		cmocka_unit_test_setup_teardown(
+			metadata_of_the_update_framework_is_signed_again_with_it, enter, tear_down),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
