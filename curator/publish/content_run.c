@@ -22,7 +22,7 @@ static void set_arguments(const char *arguments[ARGUMENTS_MAX],
 	unsigned n = 0;
 
 	arguments[n++] = "gopura-content";
-	arguments[n++] = options->sequence > 0 ? "publish" : "build";
+	arguments[n++] = options->renew || options->sequence > 0 ? "publish" : "build";
 	arguments[n++] = options->folder;
 	arguments[n++] = "--out";
 	arguments[n++] = options->release;
@@ -34,7 +34,9 @@ static void set_arguments(const char *arguments[ARGUMENTS_MAX],
 		arguments[n++] = "--comment";
 		arguments[n++] = options->comment;
 	}
-	if (options->sequence > 0) {
+	if (options->renew) {
+		arguments[n++] = "--renew";
+	} else if (options->sequence > 0) {
 		snprintf(sequence, 32, "%" PRIu64, options->sequence);
 		arguments[n++] = "--sequence";
 		arguments[n++] = sequence;
@@ -48,7 +50,7 @@ static void set_arguments(const char *arguments[ARGUMENTS_MAX],
 static int open_log(const struct content_run_options *options, int flags)
 {
 	char path[PATH_MAX];
-	int rc = publish_file_path(path, options->folder, "log");
+	int rc = publish_file_path(path, options->folder, options->renew ? "renewal.log" : "log");
 	int fd = rc < 0 ? rc : open(path, flags | O_CLOEXEC | O_NOFOLLOW, 0644);
 
 	return fd < 0 && rc == 0 ? -errno : fd;

@@ -1,4 +1,4 @@
-/* Runs gopura-content as a child, whose output goes to DIR/.curator/publish/log. */
+/* Runs gopura-content as a child, whose output goes to a log in DIR/.curator/publish. */
 #ifndef GOPURA_CURATOR_PUBLISH_CONTENT_RUN_H
 #define GOPURA_CURATOR_PUBLISH_CONTENT_RUN_H
 
@@ -8,7 +8,8 @@
 struct content_run_options {
 	const char *program, *folder, *release;
 	const char *keys, *jobs; /* NULL: not given */
-	uint64_t sequence;       /* above 0: publish --sequence; 0: build */
+	bool renew;              /* publish --renew */
+	uint64_t sequence;       /* otherwise: above 0: publish --sequence; 0: build */
 	const char *comment;     /* "": none */
 	int stop_fd;             /* readable: the child is to end */
 };

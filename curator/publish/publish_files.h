@@ -4,9 +4,11 @@
  *   state.json     by the publisher: the last request that it took, and what became of it
  *   releases.json  by the publisher: all releases, the newest first
  *   log            by the publisher: what gopura-content printed for that request
+ *   renewal.log    by the publisher: what it printed when it signed anew last
  *   lock           held by the publisher while it runs
  *
- * Each but the log is replaced whole, so a kill at any moment leaves the old one or the new one. */
+ * Each but the logs is replaced whole, so a kill at any moment leaves the old one or the new one.
+ */
 #ifndef GOPURA_CURATOR_PUBLISH_PUBLISH_FILES_H
 #define GOPURA_CURATOR_PUBLISH_PUBLISH_FILES_H
 

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -24,12 +25,15 @@ enum {
 	/* A build that was killed with us may hold the content's lock a moment longer. */
 	TRIES_AFTER_KILL = 5,
 	TRY_AGAIN_MS = 1000,
+	RENEW_S = 24 * 3600,
+	RENEW_AGAIN_MS = 3600 * 1000, /* after one that failed */
 };
 
 struct publisher {
 	const struct publisher_options *options;
 	int stop_fd, notice_fd, lock_fd;
 	bool stopped;
+	int64_t renew_ms; /* by clock_now_ms, after a renewal that failed; 0: it did not */
 	/* What temple.ini said when it had no faults last: whose releases are the folder's. */
 	bool knows_place;
 	char target[CONTENT_TARGET_BYTES], role[CONTENT_ROLE_BYTES];
@@ -164,6 +168,7 @@ static int current_sequence(struct publisher *publisher, uint64_t *out)
 
 /* ---- one request */
 
+/* request NULL: what is published is signed anew. */
 static int run_content(struct publisher *publisher, const struct publish_request *request,
 		       char message[PUBLISH_MESSAGE_BYTES])
 {
@@ -173,8 +178,9 @@ static int run_content(struct publisher *publisher, const struct publish_request
 						 .release = options->release,
 						 .keys = options->keys,
 						 .jobs = options->jobs,
-						 .sequence = request->sequence,
-						 .comment = request->comment,
+						 .renew = !request,
+						 .sequence = request ? request->sequence : 0,
+						 .comment = request ? request->comment : "",
 						 .stop_fd = publisher->stop_fd };
 
 	return content_run(&run, message);
@@ -284,6 +290,49 @@ static int step(struct publisher *publisher)
 	return work(publisher, &state, &request);
 }
 
+/* ---- when nobody asks for anything */
+
+/* The log of the last renewal tells when that was, also to a publisher that has just started. */
+static bool renewal_is_due(const struct publisher *publisher)
+{
+	char path[PATH_MAX];
+	struct stat log;
+
+	if (publisher->renew_ms > 0)
+		return clock_now_ms() >= publisher->renew_ms;
+	return publish_file_path(path, publisher->options->folder, "renewal.log") == 0 &&
+	       (stat(path, &log) < 0 ||
+		llabs(clock_wall_s() - (long long)log.st_mtim.tv_sec) > RENEW_S);
+}
+
+/* Has gopura-content sign anew what runs out, which publishes nothing that curators work on. */
+static void renew(struct publisher *publisher)
+{
+	char message[PUBLISH_MESSAGE_BYTES];
+	uint64_t before, after;
+	int rc;
+
+	if (!renewal_is_due(publisher))
+		return;
+	publisher->renew_ms = clock_now_ms() + RENEW_AGAIN_MS;
+	if (current_sequence(publisher, &before) < 0 || before == 0)
+		return;
+	rc = run_content(publisher, NULL, message);
+	if (rc == -ECANCELED) {
+		publisher->stopped = true;
+		return;
+	}
+	if (rc < 0) {
+		log_error("curator", "what is published cannot be signed anew: %s", message);
+		return;
+	}
+	publisher->renew_ms = 0;
+	log_info("curator", "what is published is signed anew");
+	if (current_sequence(publisher, &after) == 0 && after != before &&
+	    write_releases(publisher, NULL) == 0)
+		log_info("curator", "release %" PRIu64 " is the current one", after);
+}
+
 /* ---- the loop */
 
 static int start(struct publisher *publisher, struct diagnostics *diagnostics)
@@ -343,6 +392,8 @@ int publisher_run(const struct publisher_options *options, struct diagnostics *d
 		done = step(&publisher);
 		if (options->once)
 			break;
+		if (done == 0 && !publisher.stopped)
+			renew(&publisher);
 		if (!publisher.stopped)
 			wait_for_notice(&publisher);
 	}

@@ -1,7 +1,8 @@
 /* The publisher: another process than the web server, and on a museum's machine another user, who
  * alone can read the signing keys. Waits for request.json, runs gopura-content, and writes what
- * became of it (curator/publish/publish_files.h). Killed at any moment, it goes on where it was
- * when it starts again: building is idempotent, and going back is not done twice. */
+ * became of it (curator/publish/publish_files.h). Once a day it has signed anew what runs out: the
+ * timestamp is valid for 30 days. Killed at any moment, it goes on where it was when it starts
+ * again: building is idempotent, and going back is not done twice. */
 #ifndef GOPURA_CURATOR_PUBLISH_PUBLISHER_H
 #define GOPURA_CURATOR_PUBLISH_PUBLISHER_H
 

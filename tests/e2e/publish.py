@@ -206,6 +206,24 @@ def check_releases(work, petra):
     (work / "content/pages/tower.en.html").write_text("<p>Another text.</p>")
 
 
+def check_renewal(desk, work, petra):
+    """Once a day what is published is signed anew, and nothing else: not what a curator has changed since."""
+    before, log = petra.ask("GET", "/api/publish?log=1")[2], work / "content/.curator/publish/renewal.log"
+    assert "nothing changed" in log.read_text(), "the first publisher has not signed anew"
+    stamp = (work / "release/timestamp.json").stat().st_mtime
+    set_title(work, "Not finished")
+    desk.publisher.terminate()
+    assert desk.publisher.wait(timeout=60) == 0, "the publisher did not end well"
+    os.utime(log, (time.time() - 90000,) * 2)
+    desk.start_publisher()
+    until = time.monotonic() + 60
+    while (work / "release/timestamp.json").stat().st_mtime == stamp:
+        assert time.monotonic() < until, "the timestamp of yesterday is not signed anew"
+        time.sleep(0.1)
+    after = petra.ask("GET", "/api/publish?log=1")[2]
+    assert (after["releases"], after["log"]) == (before["releases"], before["log"]), after
+
+
 def check_page(desk, work):
     """The same in a browser, where there is one."""
     if not shutil.which("chromium"):
@@ -269,9 +287,12 @@ def check(desk, work, kills, seed):
     check_wishes(ana, petra)
     check_seen(work, ana, petra)
     check_releases(work, petra)
+    check_renewal(desk, work, petra)
     check_page(desk, work)
     check_kills(desk, work, kills, seed)
     desk.stop()
+    renewals = (work / "publisher.log").read_text().count("signed anew")
+    assert renewals == 2, f"signed anew {renewals} times, not twice"
 
 
 def main(work, kills, seed):
