@@ -129,23 +129,23 @@ static struct stamp_file stamp_text(struct hash stamp, struct hash root)
 	return file;
 }
 
-/* Returns true if the current release was built from exactly these inputs and is complete. What
- * runs out of it is then signed anew. */
-static bool is_built(struct build_report *report, const char *stamp_path, struct hash stamp,
-		     const struct publish_content_options *publish)
+/* Sets nothing_changed if the current release was built from exactly these inputs and is complete.
+ * What runs out of it is then signed anew, which may fail. */
+static int renew_if_built(struct build_report *report, const char *stamp_path, struct hash stamp,
+			  const struct publish_content_options *publish)
 {
 	struct stamp_file expected;
 	struct buffer file;
-	bool same;
 
 	if (access(stamp_path, R_OK) < 0 || publish_content_current(&report->publish, publish) < 0)
-		return false;
+		return 0;
 	expected = stamp_text(stamp, report->publish.publish.release.root);
 	buffer_init(&file, sizeof(expected.text));
-	same = buffer_read_file(&file, stamp_path) == 0 && file.size == strlen(expected.text) &&
-	       memcmp(file.data, expected.text, file.size) == 0;
+	report->nothing_changed = buffer_read_file(&file, stamp_path) == 0 &&
+				  file.size == strlen(expected.text) &&
+				  memcmp(file.data, expected.text, file.size) == 0;
 	buffer_finish(&file);
-	return same && publish_content_renew(&report->publish, publish) == 0;
+	return report->nothing_changed ? publish_content_renew(&report->publish, publish) : 0;
 }
 
 /* ---- the stages */
@@ -381,9 +381,9 @@ static int build_from(struct build_report *report, struct sources *sources,
 		rc = make_stamp(&stamp, sources, options);
 	if (rc < 0)
 		return rc;
-	report->nothing_changed = is_built(report, stamp_path, stamp, &publish);
-	if (report->nothing_changed)
-		return 0;
+	rc = renew_if_built(report, stamp_path, stamp, &publish);
+	if (rc < 0 || report->nothing_changed)
+		return rc;
 	rc = run_stages(report, options->jobs, &publish);
 	if (rc < 0)
 		return rc;

@@ -28,6 +28,7 @@ static const char help[] =
 	"                   what they show until its team publishes again\n"
 	"  --renew          sign the list of roles anew, as it is, before it expires\n"
 	"  --expires DAYS   days after which terminals refuse the list of roles (default: 1825)\n"
+	"  --trust-clock    as of publish: sign even if this machine's clock seems wrong\n"
 	"  --write-unsigned FOLDER\n"
 	"                   do not publish: write the metadata into FOLDER, to be signed elsewhere\n"
 	"  --add-signature FOLDER\n"
@@ -110,6 +111,7 @@ int command_delegate(int argc, char **argv)
 		{ "invalidate", no_argument, NULL, 'i' },
 		{ "renew", no_argument, NULL, 'n' },
 		{ "expires", required_argument, NULL, 'e' },
+		{ "trust-clock", no_argument, NULL, 'c' },
 		{ "write-unsigned", required_argument, NULL, 'w' },
 		{ "add-signature", required_argument, NULL, 'a' },
 		{ "help", no_argument, NULL, 'h' },
@@ -151,6 +153,9 @@ int command_delegate(int argc, char **argv)
 				return command_wrong(
 					argv[0], "--expires must be 1 to 36500 days, not ", optarg);
 			delegation->life_s = (int64_t)number * 86400;
+			break;
+		case 'c':
+			delegation->trust_clock = true;
 			break;
 		case 'w':
 			delegation->unsigned_folder = optarg;

@@ -25,6 +25,8 @@ static const char help[] =
 	"  --sequence N     publish release N again, under a new number\n"
 	"  --renew          build nothing: sign the timestamp anew, which is valid for 30 days, and with less\n"
 	"                   than two fifths of its days left the release too, under a new number\n"
+	"  --trust-clock    sign even if this machine's clock seems wrong: earlier than the last timestamp, or\n"
+	"                   more than 400 days later\n"
 	"  --write-unsigned FOLDER\n"
 	"                   do not publish: write the metadata into FOLDER, to be signed elsewhere\n"
 	"  --add-signature FOLDER\n"
@@ -99,6 +101,7 @@ int command_publish(int argc, char **argv)
 		{ "undo", no_argument, NULL, 'u' },
 		{ "sequence", required_argument, NULL, 's' },
 		{ "renew", no_argument, NULL, 'r' },
+		{ "trust-clock", no_argument, NULL, 't' },
 		{ "write-unsigned", required_argument, NULL, 'w' },
 		{ "add-signature", required_argument, NULL, 'a' },
 		{ "help", no_argument, NULL, 'h' },
@@ -136,6 +139,9 @@ int command_publish(int argc, char **argv)
 			break;
 		case 'r':
 			settings.renew = true;
+			break;
+		case 't':
+			settings.publish.trust_clock = true;
 			break;
 		case 'w':
 			settings.publish.unsigned_folder = optarg;

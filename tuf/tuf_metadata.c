@@ -352,6 +352,16 @@ uint32_t tuf_meta_version(const cJSON *meta)
 	return (uint32_t)member(meta, "version")->valuedouble;
 }
 
+int64_t tuf_issued_s(const struct tuf_file *timestamp)
+{
+	const cJSON *item = member(timestamp->content, "issued_s");
+	const double value = cJSON_IsNumber(item) ? item->valuedouble : 0;
+
+	return value >= 1 && value <= (double)timestamp->expires_s && floor(value) == value
+		       ? (int64_t)value
+		       : 0;
+}
+
 uint64_t tuf_length(const cJSON *entry, uint64_t otherwise)
 {
 	const cJSON *length = member(entry, "length");

@@ -53,6 +53,10 @@ const struct cJSON *tuf_meta(const struct tuf_file *file, const char *name);
 /* Returns the version in such an entry. */
 uint32_t tuf_meta_version(const struct cJSON *meta);
 
+/* Returns when a timestamp was signed, by its member issued_s: ours, which other clients ignore. 0:
+ * it does not say, or nonsense. */
+int64_t tuf_issued_s(const struct tuf_file *timestamp);
+
 /* Returns the length that an entry of metadata or of a target gives, or otherwise. */
 uint64_t tuf_length(const struct cJSON *entry, uint64_t otherwise);
 /* Returns whether bytes have the length and the hashes that an entry gives; where it gives hashes,

@@ -11,9 +11,23 @@ static int refuse(int error, const char **why, const char *text)
 	return error;
 }
 
-static bool has_expired(struct trust_time time, int64_t expires_s)
+int64_t trust_now_s(const struct trust *trust, struct trust_time time)
 {
-	return time.now_s != 0 && time.now_s > expires_s;
+	return time.now_s != 0 && time.now_s < trust->time_floor_s ? trust->time_floor_s
+								   : time.now_s;
+}
+
+static bool has_expired(const struct trust *trust, struct trust_time time, int64_t expires_s)
+{
+	return time.now_s != 0 && trust_now_s(trust, time) > expires_s;
+}
+
+bool trust_raise_time_floor(struct trust *trust, int64_t issued_s, struct trust_time time)
+{
+	if (issued_s <= trust->time_floor_s || issued_s > time.now_s + TRUST_CLOCKS_DIFFER_S)
+		return false;
+	trust->time_floor_s = issued_s;
+	return true;
 }
 
 int trust_pin(struct trust *trust, struct bytes file, const char **why)
@@ -97,17 +111,16 @@ int trust_timestamp(struct trust *trust, struct bytes file, struct trust_time ti
 	rc = timestamp_decode(&timestamp, &trust->root, file, why);
 	if (rc < 0)
 		return rc;
-	if (has_expired(time, trust->root.expires_s))
+	if (has_expired(trust, time, trust->root.expires_s))
 		return refuse(-EKEYEXPIRED, why, "the trust root has expired: sign root/N+1.json");
-	if (has_expired(time, timestamp.expires_s))
+	if (has_expired(trust, time, timestamp.expires_s))
 		return refuse(-EKEYEXPIRED, why, "timestamp.json has expired: publish --renew");
 	if (timestamp.sequence < trust->sequence_floor ||
 	    (trust->have_timestamp && timestamp.sequence < trust->timestamp.sequence))
 		return refuse(-ESTALE, why, "timestamp.json is older than what was seen before");
 	trust->timestamp = timestamp;
 	trust->have_timestamp = true;
-	if (timestamp.issued_s > trust->time_floor_s)
-		trust->time_floor_s = timestamp.issued_s;
+	trust_raise_time_floor(trust, timestamp.issued_s, time);
 	return 0;
 }
 
@@ -116,7 +129,7 @@ static int judge(const struct trust *trust, struct trust_time time, const struct
 {
 	if (release->sequence < trust->sequence_floor)
 		return refuse(-ESTALE, why, "release.json is older than the release that is shown");
-	if (has_expired(time, release->expires_s))
+	if (has_expired(trust, time, release->expires_s))
 		return refuse(-EKEYEXPIRED, why, "release.json has expired: publish --renew");
 	return release->sequence > trust->sequence_floor ? 1 : 0;
 }

@@ -11,23 +11,27 @@
  *                           set; otherwise a stolen key's sequence of 2^53 would block every later
  *                           release: trust_root
  *   time                    time_floor_s rises only to what a signed timestamp.json says, because
- *                           the terminal's clock may be set by anyone on the network */
+ *                           the terminal's clock may be set by anyone on the network; and only
+ *                           while that clock agrees, because the publisher's may be wrong too */
 #ifndef GOPURA_APP_RELEASE_TRUST_H
 #define GOPURA_APP_RELEASE_TRUST_H
 
 #include "format/metadata.h"
 
+enum { TRUST_CLOCKS_DIFFER_S = 86400 }; /* by as much at most, of terminal and publisher */
+
 struct trust {
 	struct trust_root root;
 	bool trusted;            /* root has been set */
 	uint64_t sequence_floor; /* sequence of the stored release */
-	int64_t time_floor_s; /* when the latest accepted timestamp.json was issued, seconds since
-				 1970: it cannot be earlier now */
+	int64_t time_floor_s;    /* when the latest timestamp.json of trust_raise_time_floor was
+				    issued,    seconds since 1970: it cannot be earlier now */
 	struct timestamp timestamp;
 	bool have_timestamp;
 };
 
-/* now_s: seconds since 1970; 0: the clock is not known to be set, so nothing counts as expired. */
+/* now_s: what the clock says, seconds since 1970; 0: it is not known to be set, so nothing counts
+ * as expired. */
 struct trust_time {
 	int64_t now_s;
 };
@@ -48,7 +52,7 @@ must_check int trust_pin(struct trust *trust, struct bytes file, const char **wh
  *                        others. */
 must_check int trust_root(struct trust *trust, struct bytes file, struct bytes remembered,
 			  const char **why);
-/* Checks timestamp.json and keeps it; the time floor rises to its date of issue. */
+/* Checks timestamp.json and keeps it; the time floor rises: trust_raise_time_floor. */
 must_check int trust_timestamp(struct trust *trust, struct bytes file, struct trust_time time,
 			       const char **why);
 /* Checks release.json against the last timestamp.json. Returns 1 if *out is a newer release, to be
@@ -58,6 +62,12 @@ must_check int trust_release(struct trust *trust, struct bytes file, struct trus
 /* The same for a release.json that is a signed target of The Update Framework. */
 must_check int trust_target(const struct trust *trust, struct bytes file, struct trust_time time,
 			    struct release *out, const char **why);
+/* Returns by which time expiry is judged: the later of clock and time floor, or 0. */
+int64_t trust_now_s(const struct trust *trust, struct trust_time time);
+/* Raises the time floor to when an accepted timestamp was issued (0: it does not say), and returns
+ * whether it rose. It does not while the clock is not set, or if that is further ahead of the clock
+ * than clocks differ. Call it in each round: the clock may be set by then. */
+bool trust_raise_time_floor(struct trust *trust, int64_t issued_s, struct trust_time time);
 /* Raises the sequence floor, because a release with this sequence was stored. */
 void trust_accept(struct trust *trust, uint64_t sequence);
 

@@ -4,7 +4,6 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
-#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,17 +36,6 @@ static enum tuf_type type_of(const char *name)
 	return type;
 }
 
-/* Returns the time that the timestamp gives itself, if that makes sense. */
-static int64_t issued_s(const struct tuf_file *timestamp)
-{
-	const cJSON *item = cJSON_GetObjectItemCaseSensitive(timestamp->content, "issued_s");
-	const double value = cJSON_IsNumber(item) ? item->valuedouble : 0;
-
-	return value >= 1 && value <= (double)timestamp->expires_s && floor(value) == value
-		       ? (int64_t)value
-		       : 0;
-}
-
 /* Notes what a kept file says of itself. */
 static void note(struct tuf_follower *follower, enum tuf_type type)
 {
@@ -59,7 +47,7 @@ static void note(struct tuf_follower *follower, enum tuf_type type)
 		follower->expires_s[type] = file.expires_s;
 		follower->version[type] = file.version;
 		if (type == TUF_TIMESTAMP)
-			follower->issued_s = issued_s(&file);
+			follower->issued_s = tuf_issued_s(&file);
 	}
 	tuf_file_finish(&file);
 }

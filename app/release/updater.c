@@ -208,14 +208,9 @@ void updater_start(struct updater *updater)
 			       updater->shown.root_bytes);
 }
 
-/* Returns the later of clock and time floor; 0 if the clock is not known to be set. */
-static struct trust_time time_now(const struct updater *updater)
+static struct trust_time time_now(void)
 {
-	const int64_t now_s = clock_wall_s(), floor_s = updater->trust.time_floor_s;
-
-	if (!clock_wall_is_set())
-		return (struct trust_time){ 0 };
-	return (struct trust_time){ now_s > floor_s ? now_s : floor_s };
+	return (struct trust_time){ clock_wall_is_set() ? clock_wall_s() : 0 };
 }
 
 static void begin_next(struct updater *updater, const struct release *release, struct bytes file,
@@ -321,10 +316,6 @@ static void store_tuf(struct updater *updater)
 			 tuf->version[TUF_ROOT]);
 	if (state_writer_set_tuf(updater->writer, &kept, clear) < 0)
 		log_warn("app", "the trusted metadata could not be stored");
-	if (tuf->issued_s > updater->trust.time_floor_s) {
-		updater->trust.time_floor_s = tuf->issued_s;
-		state_writer_raise_time_floor(updater->writer, tuf->issued_s);
-	}
 	tuf->changed = false;
 	tuf->clear = STATE_CLEAR_NOTHING;
 	if (clear != STATE_CLEAR_NOTHING && updater->next.sequence > 0)
@@ -339,7 +330,7 @@ static void follow_tuf(struct updater *updater, enum meta_source source)
 					updater->next.sequence > 0
 						? buffer_bytes(&updater->next_file)
 						: (struct bytes){ NULL, 0 } };
-	const struct trust_time time = time_now(updater);
+	const struct trust_time time = time_now();
 	const char *why = updater->tuf.why;
 	struct release release;
 	struct buffer file;
@@ -348,8 +339,11 @@ static void follow_tuf(struct updater *updater, enum meta_source source)
 	if (updater->writing)
 		return; /* as for a root in updater_meta; the next timestamp runs it again */
 	buffer_init(&file, METADATA_FILE_BYTES_MAX);
-	rc = tuf_follower_run(&updater->tuf, source, time.now_s, known, &file);
+	rc = tuf_follower_run(&updater->tuf, source, trust_now_s(&updater->trust, time), known,
+			      &file);
 	store_tuf(updater);
+	if (trust_raise_time_floor(&updater->trust, updater->tuf.issued_s, time))
+		state_writer_raise_time_floor(updater->writer, updater->trust.time_floor_s);
 	if (rc == -EAGAIN) {
 		updater->options.ask(updater->options.data, &updater->tuf.ask);
 		buffer_finish(&file);
@@ -409,7 +403,7 @@ void updater_meta(struct updater *updater, enum meta_role role, uint32_t version
 				      "timestamp.json of the stick" },
 	};
 	const char *const name = names[source][role];
-	const struct trust_time time = time_now(updater);
+	const struct trust_time time = time_now();
 	const int64_t time_floor_s = updater->trust.time_floor_s;
 	struct release release;
 	const char *why = "";

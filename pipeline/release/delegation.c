@@ -12,6 +12,7 @@
 #include "base/json_tree.h"
 #include "base/log.h"
 #include "pipeline/release/publish.h"
+#include "pipeline/release/published.h"
 #include "pipeline/release/release_tuf.h"
 #include "pipeline/release/tuf_staged.h"
 #include "tuf/public_key.h"
@@ -356,8 +357,14 @@ static int change(const struct delegation_options *options,
 					   .context = context,
 					   .expires_s = clock_wall_s() + options->life_s,
 					   .renews = edit == edit_nothing };
+	const struct publish_target target = { .release = options->release,
+					       .keys_folder = options->keys_folder,
+					       .tuf_alone = true,
+					       .trust_clock = options->trust_clock };
 	int rc = check_form(options);
 
+	if (rc == 0)
+		rc = published_check_clock(&target);
 	return rc < 0 ? rc
 		      : release_tuf_change(&place, &change, TIMESTAMP_LIFE_DAYS * 86400ll,
 					   options->unsigned_folder);

@@ -23,6 +23,7 @@ struct delegation_options {
 	/* Goes on where the role's present release is not valid any more afterwards. */
 	bool invalidate;
 	int64_t life_s;              /* of targets.json */
+	bool trust_clock;            /* as struct publish_target has it */
 	const char *unsigned_folder; /* as release_tuf_write has it; NULL: it is published */
 };
 

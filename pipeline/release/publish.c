@@ -182,6 +182,8 @@ int publish_renew(struct publish_report *report, const struct publish_target *ta
 
 	report->changed = false;
 	if (rc == 0)
+		rc = published_check_clock(target);
+	if (rc == 0)
 		rc = published_expires_s(target, &report->release, &expires_s);
 	if (rc < 0)
 		return rc;
@@ -270,6 +272,9 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 		rc = make_root(&page, objects, root, children, child_count);
 	if (rc < 0)
 		return rc;
+	rc = published_check_clock(target);
+	if (rc < 0)
+		return rc;
 	rc = published_current(target, &before);
 	if (rc < 0 && rc != -ENOENT)
 		return rc;
@@ -292,8 +297,10 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 	struct release current, again;
 	struct page_child root;
 	struct locator locator;
-	int rc = published_current(target, &current);
+	int rc = published_check_clock(target);
 
+	if (rc == 0)
+		rc = published_current(target, &current);
 	*report = (struct publish_report){ 0 };
 	if (rc < 0) {
 		if (rc == -ENOENT)

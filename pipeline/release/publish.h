@@ -22,6 +22,7 @@ struct publish_target {
 	/* Where metadata of The Update Framework goes that is signed elsewhere; NULL: it is
 	 * published. With tuf_alone. */
 	const char *unsigned_folder;
+	bool trust_clock;       /* sign even if published_check_clock would refuse */
 	const char *comment;    /* NULL: none. A changed comment alone also makes a new release. */
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 	int64_t timestamp_life_s; /* 0: TIMESTAMP_LIFE_DAYS */
@@ -50,7 +51,8 @@ must_check int publish_again(struct publish_report *report, const struct publish
 
 /* Signs anew what runs out: the timestamp; and with less than two fifths of its life left, which is
  * release_life_s, the release itself, under the next sequence. Only release and changed of *report
- * are set. Returns -ENOENT if nothing was published yet. */
+ * are set. Returns -ENOENT if nothing was published yet; -ECANCELED, as the two above: the clock
+ * seems to be wrong (published_check_clock). */
 must_check int publish_renew(struct publish_report *report, const struct publish_target *target);
 
 /* Creates the folder "a/b/c" and all folders above it. Errors are logged. */

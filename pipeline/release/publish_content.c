@@ -62,6 +62,7 @@ static int destination_init(struct destination *destination, char release[PATH_M
 						       .tuf_target = content->tuf_target,
 						       .tuf_role = content->tuf_role,
 						       .unsigned_folder = options->unsigned_folder,
+						       .trust_clock = options->trust_clock,
 						       .comment = options->comment,
 						       .release_life_s = options->release_life_s };
 	if (!content->tuf_alone && (options->unsigned_folder || content->tuf_role[0])) {

@@ -17,6 +17,7 @@ struct publish_content_options {
 	/* Where metadata goes that is signed elsewhere; NULL: it is published. */
 	const char *unsigned_folder;
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
+	bool trust_clock;       /* as struct publish_target has it */
 };
 
 struct publish_content_report {

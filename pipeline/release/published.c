@@ -4,10 +4,17 @@
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
+#include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/log.h"
 #include "pipeline/keys/keys_tuf.h"
+
+enum {
+	CLOCK_BEHIND_S = 86400, /* several machines may publish into one folder */
+	CLOCK_AHEAD_S = 400 * 86400,
+};
 
 struct tuf_place published_place(const struct publish_target *target)
 {
@@ -17,15 +24,23 @@ struct tuf_place published_place(const struct publish_target *target)
 				   .role = target->tuf_role };
 }
 
+/* -ENOENT, that there is no root or role, is logged, and not the same as that nothing was
+ * published.
+ */
+static int open_folder(struct tuf_folder *out, const struct tuf_place *place)
+{
+	const int rc = tuf_folder_open(out, place);
+
+	return rc == -ENOENT ? -ENOKEY : rc;
+}
+
 int published_file(const struct tuf_place *place, struct release *out, struct buffer *file)
 {
 	struct tuf_folder folder;
-	int rc = tuf_folder_open(&folder, place);
+	int rc = open_folder(&folder, place);
 
 	if (rc == 0)
 		rc = tuf_folder_current(&folder, out, file);
-	else if (rc == -ENOENT)
-		rc = -ENOKEY; /* logged; not the same as that nothing was published */
 	tuf_folder_finish(&folder);
 	return rc;
 }
@@ -62,10 +77,55 @@ int published_expires_s(const struct publish_target *target, const struct releas
 	*out = current->expires_s;
 	if (rc < 0 || root == 0)
 		return rc;
-	rc = tuf_folder_open(&folder, &place);
+	rc = open_folder(&folder, &place);
 	*out = earlier(earlier(*out, tuf_folder_naming(&folder)), &folder.snapshot);
 	tuf_folder_finish(&folder);
 	return rc;
+}
+
+static int last_issued_s(const struct publish_target *target, int64_t *out)
+{
+	const struct tuf_place place = published_place(target);
+	struct tuf_folder folder;
+	int rc;
+
+	if (!target->tuf_alone)
+		return release_files_issued_s(out, target->release, target->keys);
+	rc = open_folder(&folder, &place);
+	*out = tuf_folder_issued_s(&folder);
+	tuf_folder_finish(&folder);
+	return rc;
+}
+
+struct date {
+	char text[32];
+};
+
+static struct date date_of(int64_t at_s)
+{
+	const time_t time_s = (time_t)at_s;
+	struct date date = { "" };
+	struct tm tm;
+
+	if (gmtime_r(&time_s, &tm))
+		strftime(date.text, sizeof(date.text), "%Y-%m-%d %H:%M", &tm);
+	return date;
+}
+
+int published_check_clock(const struct publish_target *target)
+{
+	const int64_t now_s = clock_wall_s();
+	int64_t issued_s;
+	int rc = target->trust_clock ? 0 : last_issued_s(target, &issued_s);
+
+	if (rc < 0 || target->trust_clock || issued_s == 0 ||
+	    (now_s >= issued_s - CLOCK_BEHIND_S && now_s <= issued_s + CLOCK_AHEAD_S))
+		return rc;
+	log_error("pipeline",
+		  "the clock of this machine says %s UTC, but the last timestamp in %s was signed "
+		  "at %s UTC: set the clock; if it is right, publish once with --trust-clock",
+		  date_of(now_s).text, target->release, date_of(issued_s).text);
+	return -ECANCELED;
 }
 
 /* Reads the release of a version, or with before the newest one below it with another root. */

@@ -23,6 +23,12 @@ must_check int published_before(const struct publish_target *target, const struc
 must_check int published_expires_s(const struct publish_target *target,
 				   const struct release *current, int64_t *out);
 
+/* Compares this machine's clock with when the last timestamp was signed. What is signed by a clock
+ * that is years behind has expired already, and by one that is ahead, keeps terminals from what is
+ * signed by the right one afterwards. Returns 0; -ECANCELED: it is a day behind, or further ahead
+ * than nobody publishes, and the target does not trust it. Errors are logged. */
+must_check int published_check_clock(const struct publish_target *target);
+
 /* Returns the sequence of the next release: above that of the current one, and above the versions
  * of what others published in its place. */
 uint64_t published_next(const struct publish_target *target, uint64_t current);

@@ -167,6 +167,27 @@ int release_files_before(struct release *out, const char *release, const char *k
 	return -ENOENT;
 }
 
+int release_files_issued_s(int64_t *out, const char *release, const struct publisher_keys *keys)
+{
+	struct timestamp timestamp = { 0 };
+	char path[PATH_MAX];
+	struct buffer file;
+	int rc = make_path(path, release, "timestamp.json");
+
+	*out = 0;
+	buffer_init(&file, METADATA_FILE_BYTES_MAX);
+	if (rc == 0)
+		rc = buffer_read_file(&file, path);
+	if (rc == 0)
+		rc = timestamp_decode(&timestamp, &keys->trust, buffer_bytes(&file), NULL);
+	buffer_finish(&file);
+	if (is_transient(rc))
+		log_error("pipeline", "%s: %s", path, strerror(-rc));
+	else if (rc == 0)
+		*out = timestamp.issued_s;
+	return is_transient(rc) ? rc : 0;
+}
+
 static int make_folders(const char *release)
 {
 	static const char *const names[] = { "root", "history" };

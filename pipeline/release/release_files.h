@@ -28,6 +28,11 @@ must_check int release_files_before(struct release *out, const char *release,
 				    const char *keys_folder, const struct publisher_keys *keys,
 				    const struct release *current);
 
+/* Reads when the timestamp was signed. 0: there is none, it does not say, or keys signed it that do
+ * not count any more. Errors of reading are logged. */
+must_check int release_files_issued_s(int64_t *out, const char *release,
+				      const struct publisher_keys *keys);
+
 /* Signs and writes roots, history, release.json and timestamp.json. timestamp_life_s: how long the
  * timestamp is valid from now, seconds. Errors are logged. */
 must_check int release_files_write(const char *release, const char *keys_folder,

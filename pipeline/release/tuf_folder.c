@@ -312,6 +312,13 @@ int tuf_folder_open(struct tuf_folder *out, const struct tuf_place *place)
 	return rc == 0 && has_role(out) ? open_own(out) : rc;
 }
 
+int64_t tuf_folder_issued_s(const struct tuf_folder *folder)
+{
+	return folder->timestamp.json && is_signed(folder, &folder->timestamp, TUF_TIMESTAMP)
+		       ? tuf_issued_s(&folder->timestamp)
+		       : 0;
+}
+
 void tuf_folder_finish(struct tuf_folder *folder)
 {
 	tuf_file_finish(&folder->root);

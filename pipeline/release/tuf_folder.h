@@ -60,6 +60,10 @@ bool tuf_folder_role_has_path(const struct cJSON *role, const char *target);
 must_check int tuf_folder_read_role(const struct tuf_folder *folder, const char *name,
 				    struct tuf_file *out, uint32_t *version);
 
+/* Returns when the timestamp was signed. 0: there is none, it does not say, or the root's keys have
+ * not signed it. */
+int64_t tuf_folder_issued_s(const struct tuf_folder *folder);
+
 /* What becomes of other releases and roles must not be decided by a key that was exchanged. Returns
  * whether targets.json is signed by such a key, and has more than one release. */
 bool tuf_folder_needs_renewal(const struct tuf_folder *folder);

@@ -404,6 +404,15 @@ static void only_a_signed_timestamp_raises_the_time_floor(void **state)
 		CHECK(trust_timestamp(&trust, buffer_bytes(&stamp), now, &why) == 0);
 		CHECK(trust.time_floor_s == (i == 0 ? 0 : NOW_S - DAY_S));
 	}
+	for (int i = 0; i < 2; i++) {
+		/* further ahead than clocks differ; as far, by a clock that is not set */
+		timestamp.issued_s = NOW_S + DAY_S + (i == 0);
+		buffer_clear(&stamp);
+		CHECK(timestamp_encode(&stamp, &timestamp, &timestamp_key, 1) == 0);
+		CHECK(trust_timestamp(&trust, buffer_bytes(&stamp), i == 0 ? now : no_clock,
+				      &why) == 0);
+		CHECK(trust.time_floor_s == NOW_S - DAY_S);
+	}
 	timestamp.issued_s = NOW_S + DAY_S;
 	buffer_clear(&stamp);
 	CHECK(timestamp_encode(&stamp, &timestamp, &stranger, 1) == 0);

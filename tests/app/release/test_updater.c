@@ -20,6 +20,7 @@ enum { DAY_S = 86400, TODAY_S = 1800000000 };
 
 /* In place of the machine's: a clock that is set, by whomever. */
 static int64_t wall_s = TODAY_S;
+static bool is_set = true;
 
 int64_t clock_wall_s(void)
 {
@@ -28,7 +29,7 @@ int64_t clock_wall_s(void)
 
 bool clock_wall_is_set(void)
 {
-	return true;
+	return is_set;
 }
 
 static char folder[64], state_path[96], trust_path[96];
@@ -470,6 +471,47 @@ static void a_signed_time_stands_against_a_clock_that_was_set_back(void **unused
 	updater_destroy(updater);
 }
 
+static void a_publisher_whose_clock_was_ahead_once_blocks_nothing(void **unused)
+{
+	struct updater *updater = open_follow();
+
+	(void)unused;
+	for (uint8_t n = 1; n < 5; n += 2) {
+		is_set = n > 1; /* at a start, the network may not have set it yet */
+		issued_s = TODAY_S + 300 * DAY_S;
+		expires_in_s = 330 * DAY_S;
+		show_and_prove(updater, n, 0x10 + n);
+		is_set = true;
+		issued_s = TODAY_S;
+		expires_in_s = 30 * DAY_S;
+		show_and_prove(updater, n + 1, 0x10 + n + 1);
+		CHECK(updater_refusal(updater)->count == 0);
+		reopen(&updater);
+	}
+	issued_s = 0;
+	expires_in_s = DAY_S;
+	updater_destroy(updater);
+}
+
+/* The same timestamp comes in each round. */
+static void a_signed_time_counts_once_the_clock_is_set(void **unused)
+{
+	struct updater *updater = open_follow();
+
+	(void)unused;
+	is_set = false;
+	issued_s = TODAY_S;
+	show_and_prove(updater, 1, 0x11);
+	is_set = true;
+	publish(updater, 1, 0x11);
+	issued_s = 0;
+	wall_s = TODAY_S - 365 * DAY_S;
+	publish(updater, 2, 0x22);
+	CHECK(told.begun == 1 && strstr(updater_refusal(updater)->why, "expired"));
+	wall_s = TODAY_S;
+	updater_destroy(updater);
+}
+
 /* ---- keys that were stolen */
 
 #define THIEFS_SEQUENCE ((uint64_t)1 << 53)
@@ -484,15 +526,16 @@ static void give_root(struct updater *updater, uint32_t version)
 }
 
 /* The museum's own, then a thief's who has both keys: the last sequence there is, and a time floor
- * in the next century. */
+ * in the next century, in which the terminal's clock is by his time server. */
 static struct updater *be_robbed(void)
 {
 	struct updater *updater = open_follow();
 
 	show_and_prove(updater, 7, 0x77);
-	issued_s = Y2099_S;
+	wall_s = issued_s = Y2099_S;
 	expires_in_s = LATE_S - TODAY_S;
 	show_and_prove(updater, THIEFS_SEQUENCE, 0xee);
+	wall_s = TODAY_S;
 	issued_s = 0;
 	expires_in_s = DAY_S;
 	publish(updater, 8, 0x88);
@@ -623,6 +666,11 @@ int main(void)
 		cmocka_unit_test_setup_teardown(keeps_showing_what_has_expired, enter_museum,
 						leave_museum),
 		cmocka_unit_test_setup_teardown(a_clock_that_is_wrong_for_a_day_spoils_nothing,
+						enter_museum, leave_museum),
+		cmocka_unit_test_setup_teardown(
+			a_publisher_whose_clock_was_ahead_once_blocks_nothing, enter_museum,
+			leave_museum),
+		cmocka_unit_test_setup_teardown(a_signed_time_counts_once_the_clock_is_set,
 						enter_museum, leave_museum),
 		cmocka_unit_test_setup_teardown(
 			a_signed_time_stands_against_a_clock_that_was_set_back, enter_museum,

@@ -293,6 +293,21 @@ static void the_signed_time_stands_against_a_clock_that_was_set_back(void **unus
 	CHECK(begun_root.bytes[0] == 2 && strstr(updater_refusal(updater)->why, "expired"));
 }
 
+static void a_publisher_whose_clock_was_ahead_once_blocks_nothing(void **unused)
+{
+	(void)unused;
+	go_over();
+	issued_s = NOW_S + 300 * 86400;
+	publish(2);
+	look();
+	show(2);
+	issued_s = NOW_S;
+	expires_s = NOW_S + 30 * 86400;
+	publish(3);
+	look();
+	CHECK(begun_root.bytes[0] == 3 && updater_refusal(updater)->count == 0);
+}
+
 static void begins_with_a_root_of_tuf_that_was_given(void **unused)
 {
 	char second_path[128];
@@ -323,6 +338,7 @@ int main(void)
 		IN_A_MUSEUM(goes_over_in_a_later_round_where_the_root_was_not_there_yet),
 		IN_A_MUSEUM(a_release_below_the_one_that_is_shown_is_refused),
 		IN_A_MUSEUM(a_root_that_withdraws_keys_drops_what_they_signed_and_its_floor),
+		IN_A_MUSEUM(a_publisher_whose_clock_was_ahead_once_blocks_nothing),
 		IN_A_MUSEUM(the_signed_time_stands_against_a_clock_that_was_set_back),
 		IN_A_MUSEUM(begins_with_a_root_of_tuf_that_was_given),
 	};

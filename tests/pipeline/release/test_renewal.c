@@ -1,5 +1,8 @@
 /* What becomes of a release that nobody changes for years. */
+#include <errno.h>
+
 #include "base/clock.h"
+#include "pipeline/keys/keys_exchange.h"
 #include "pipeline/keys/keys_tuf.h"
 #include "pipeline/release/publish.h"
 #include "pipeline/release/published.h"
@@ -49,9 +52,11 @@ static void publishing_what_has_not_changed_signs_it_again_in_time(void **state)
 	struct publish_report again;
 
 	(void)state;
-	go_to_day(RELEASE_LIFE_DAYS * 3 / 5 - 1);
-	again = tiny_publish(&tiny, NULL);
-	CHECK(!again.changed && again.release.sequence == 1);
+	for (int year = 1; year <= 3; year++) {
+		go_to_day(year * (RELEASE_LIFE_DAYS / 5) - 1);
+		again = tiny_publish(&tiny, NULL);
+		CHECK(!again.changed && again.release.sequence == 1);
+	}
 	go_to_day(RELEASE_LIFE_DAYS * 3 / 5 + 1);
 	again = tiny_publish(&tiny, NULL);
 	CHECK(again.changed && again.release.sequence == 2 && again.packs.packs_written == 0);
@@ -105,6 +110,7 @@ static void metadata_of_the_update_framework_is_signed_again_with_it(void **stat
 	(void)state;
 	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
 	tiny_publish(&tiny, NULL);
+	target.trust_clock = true;
 	for (int alone = 0; alone < 2; alone++) {
 		target.tuf_alone = alone;
 		ahead_s += (RELEASE_LIFE_DAYS * 3 / 5 + 1) * (int64_t)DAY_S;
@@ -113,6 +119,95 @@ static void metadata_of_the_update_framework_is_signed_again_with_it(void **stat
 		CHECK(expires_s >= clock_wall_s() + (int64_t)RELEASE_LIFE_DAYS * DAY_S - 60);
 		CHECK(publish_renew(&report, &target) == 0 && !report.changed);
 		check_valid(report.release.sequence);
+	}
+}
+
+/* ---- a machine whose clock is wrong */
+
+/* What the release folder has, as text. */
+static struct hash all_files(void)
+{
+	char command[200];
+	struct buffer list;
+	FILE *pipe;
+	int byte;
+
+	snprintf(command, sizeof(command), "cd '%s' && find . -type f | sort | xargs cksum",
+		 tiny.release);
+	buffer_init(&list, 1 << 20);
+	pipe = popen(command, "r");
+	CHECK(pipe != NULL);
+	while ((byte = fgetc(pipe)) != EOF)
+		buffer_put_u8(&list, (uint8_t)byte);
+	CHECK(pclose(pipe) == 0 && list.size > 0);
+	const struct hash hash = hash_of(buffer_bytes(&list));
+	buffer_finish(&list);
+	return hash;
+}
+
+static void check_refused(const struct publish_target *target, int64_t clock_s)
+{
+	const struct hash before = all_files();
+	const int64_t right_s = ahead_s;
+	struct publish_report report;
+
+	ahead_s += clock_s;
+	CHECK(publish_renew(&report, target) == -ECANCELED);
+	CHECK(publish_again(&report, target, 1) == -ECANCELED);
+	CHECK(hash_equal(all_files(), before));
+	ahead_s = right_s;
+}
+
+static void a_clock_that_disagrees_with_the_last_timestamp_signs_nothing(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		CHECK(publish_again(&report, &target, 1) == 0);
+		check_refused(&target, -6 * 365 * (int64_t)DAY_S); /* an empty battery */
+		check_refused(&target, -DAY_S - 60);
+		check_refused(&target, 401 * (int64_t)DAY_S);
+		ahead_s -= DAY_S - 60; /* of another machine */
+		CHECK(publish_renew(&report, &target) == 0);
+		ahead_s += DAY_S - 60 + 399 * (int64_t)DAY_S;
+		CHECK(publish_renew(&report, &target) == 0);
+		/* That was wrong: a person says so. */
+		ahead_s -= 399 * (int64_t)DAY_S;
+		check_refused(&target, 0);
+		target.trust_clock = true;
+		CHECK(publish_renew(&report, &target) == 0);
+		target.trust_clock = false;
+		CHECK(publish_renew(&report, &target) == 0);
+	}
+}
+
+/* A thief's timestamp says any time; the key that replaces his says that it counts for nothing. */
+static void a_timestamp_of_a_key_that_was_exchanged_tells_no_time(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct keys_exchanged exchanged;
+	struct publish_report report;
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	go_to_day(300);
+	tiny_publish(&tiny, NULL);
+	go_to_day(0);
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		check_refused(&target, 0);
+	}
+	CHECK(keys_exchange(&exchanged, tiny.keys_at, 1 << EXCHANGE_TIMESTAMP) == 0);
+	keys_finish(&tiny.keys);
+	CHECK(keys_load(&tiny.keys, tiny.keys_at) == 0);
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		CHECK(publish_renew(&report, &target) == 0);
 	}
 }
 
@@ -127,6 +222,11 @@ int main(void)
 			a_release_that_lives_for_weeks_is_not_signed_each_night, enter, tear_down),
 		cmocka_unit_test_setup_teardown(
 			metadata_of_the_update_framework_is_signed_again_with_it, enter, tear_down),
+		cmocka_unit_test_setup_teardown(
+			a_clock_that_disagrees_with_the_last_timestamp_signs_nothing, enter,
+			tear_down),
+		cmocka_unit_test_setup_teardown(
+			a_timestamp_of_a_key_that_was_exchanged_tells_no_time, enter, tear_down),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
