@@ -59,6 +59,12 @@ get -I "${server_url}packs/ffffffffffffffffffffffffffffffff" | grep -qi immutabl
 curl -sS --max-time 20 "${server_url}release.json" >/dev/null 2>&1 && fail "trusted without the CA"
 [ "$(stat -c %a "$run/tls")" = 700 ] || fail "the CA's key is readable"
 
+# Each round of a terminal asks for the next root, for years.
+refused 404 "${server_url}root/2.json"
+refused 404 "${server_url}tuf/2.root.json"
+! grep 'root' "$run/logs/error.log" || fail "a root that is not there yet fills the log"
+grep -q 'packs/f' "$run/logs/error.log" || fail "a pack that is missing is not in the log"
+
 # The same certificate after a restart; a signal ends all of it.
 before=$(sha256sum <"$run/tls/server.pem") port=${server_url%/} port=${port##*:}
 stop_server
