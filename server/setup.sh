@@ -26,7 +26,8 @@ mkdir -p "$run/logs" "$run/temp" "$run/tls"
 chmod 0700 "$run/tls"
 run=$(cd "$run" && pwd)
 
-# ---- certificate: valid for ten years, because nobody maintains a terminal; renewed when the names change
+# ---- certificates: an authority for thirty years, because terminals have to be told of another one by hand, and one of
+# the server for ten, renewed when the names change or a year is left
 names="DNS:localhost,IP:127.0.0.1"
 for name in "$@"; do
 	case $name in
@@ -39,18 +40,24 @@ cd "$run/tls"
 if [ ! -f ca.key ] || [ ! -f ../ca.pem ]; then
 	rm -f names server.pem
 	ec ca.key
-	openssl req -x509 -new -key ca.key -sha256 -days 3650 -subj "/CN=Gopura museum server" \
+	openssl req -x509 -new -key ca.key -sha256 -days 10950 -subj "/CN=Gopura museum server $(date +%F)" \
 		-addext basicConstraints=critical,CA:TRUE,pathlen:0 \
 		-addext keyUsage=critical,keyCertSign,cRLSign -out ../ca.pem
 fi
-if [ ! -f server.pem ] || [ "$(cat names 2>/dev/null)" != "$names" ] ||
-	! openssl x509 -in server.pem -noout -checkend $((30 * 86400)) >/dev/null; then
+lasts() { openssl x509 -in "$1" -noout -checkend $((365 * 86400)) >/dev/null; }
+until=$(openssl x509 -in ../ca.pem -noout -enddate | cut -d = -f 2)
+days=$((($(date -d "$until" +%s) - $(date +%s)) / 86400)) # what an authority signs is worth nothing after its own end
+lasts ../ca.pem ||
+	echo "setup.sh: WARNING: the certificate authority $run/ca.pem ends on $until. Then no terminal reaches this server" \
+		"any more. Give all terminals another one before: docs/server.md, Another certificate authority" >&2
+if [ ! -f server.pem ] || [ "$(cat names 2>/dev/null)" != "$names" ] || ! lasts server.pem; then
+	[ "$days" -gt 0 ] || { echo "setup.sh: an authority that has ended signs no certificate" >&2; exit 1; }
 	ec server.key
 	printf '%s\n' "subjectAltName=$names" basicConstraints=critical,CA:FALSE \
-		keyUsage=critical,digitalSignature extendedKeyUsage=serverAuth >extensions
+		keyUsage=critical,digitalSignature extendedKeyUsage=serverAuth authorityKeyIdentifier=keyid >extensions
 	openssl req -new -key server.key -subj "/CN=localhost" -out request.pem
 	openssl x509 -req -in request.pem -CA ../ca.pem -CAkey ca.key -CAcreateserial -sha256 \
-		-days 3650 -extfile extensions -out server.pem 2>openssl.log || { cat openssl.log >&2; exit 1; }
+		-days $((days < 3650 ? days : 3650)) -extfile extensions -out server.pem 2>openssl.log || { cat openssl.log >&2; exit 1; }
 	printf '%s' "$names" >names
 fi
 cd "$run"

@@ -74,4 +74,27 @@ start_server "$release" "$run" "$port"
 get "${server_url}release.json" >/dev/null
 server/serve.sh "$release" "$port" "$folder/run2" >"$folder/second.log" 2>&1 && fail "two on one port"
 grep -q "port $port" "$folder/second.log" || fail "the message does not name the port"
+
+# The authority outlives the terminals; of one that does not, setup warns, and signs nothing that would outlive it. Terminals
+# may trust two at once, for the change.
+lasts() { openssl x509 -in "$1" -noout -checkend $(($2 * 86400)) >/dev/null; }
+setup() { server/setup.sh "$release" 443 "$folder/run2" "$@" 2>&1; }
+lasts "$run/ca.pem" 10900 || fail "the authority ends too soon"
+! setup | grep WARNING || fail "a new authority is warned of"
+openssl req -x509 -new -key "$folder/run2/tls/ca.key" -sha256 -days 300 -subj "/CN=old" -out "$folder/run2/ca.pem"
+setup another.name | grep -q 'WARNING: the certificate authority .* ends on' || fail "no warning of an authority that ends"
+openssl verify -CAfile "$folder/run2/ca.pem" "$folder/run2/tls/server.pem" >/dev/null || fail "not signed by it"
+lasts "$folder/run2/tls/server.pem" 298 || fail "a certificate that ends too soon"
+! lasts "$folder/run2/tls/server.pem" 300 || fail "a certificate that outlives its authority"
+rm -r "$folder/run2"
+cat "$run/ca.pem" >"$folder/both.pem"
+stop_server
+start_server "$release" "$folder/run2"
+cat "$folder/run2/ca.pem" >>"$folder/both.pem"
+for one in "$run" "$folder/run2"; do
+	stop_server
+	start_server "$release" "$one"
+	server_ca=$folder/both.pem
+	get "${server_url}release.json" >/dev/null || fail "two authorities in one file: $one is not reached"
+done
 echo "the server serves releases and nothing else"
