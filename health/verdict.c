@@ -223,21 +223,29 @@ static void judge_trust(struct verdict *verdict, const struct snapshot *snapshot
 		"If it has none, a stick with the release brings it (docs/release.md).");
 }
 
-static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
+/* Judges whether the server is reached. What failed before it was lost is no reason for that. */
+static void judge_server(struct verdict *verdict, const struct snapshot *snapshot)
 {
+	const struct bytes fetch = buffer_bytes(&snapshot->answers[PROGRAM_FETCH].text);
 	const double since_s =
 		figure(snapshot, PROGRAM_FETCH, "gopura_fetch_offline_since_seconds");
 	const double offline_s = (double)snapshot->taken_wall_s - since_s;
-	char gone[40];
+	char gone[40], why[200] = "";
 
-	if (since_s > 0 && offline_s > OFFLINE_S) {
-		verdict_duration(gone, sizeof(gone), offline_s);
-		add(verdict, LEVEL_WARNING, "The museum server does not respond",
-		    "Visitors see what was downloaded before. Check the network cable or Wi-Fi. Then "
-		    "check whether another computer in this network can open [release] url of "
-		    "gopura.conf.",
-		    "No response for %s.", gone);
-	}
+	if (!(since_s > 0) || !(offline_s > OFFLINE_S))
+		return;
+	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_refused_at_seconds") >= since_s)
+		metrics_label(fetch, "gopura_fetch_refusal_info", "why", why, sizeof(why));
+	verdict_duration(gone, sizeof(gone), offline_s);
+	add(verdict, LEVEL_WARNING, "The museum server does not respond",
+	    "Visitors see what was downloaded before. If the reason is a certificate, see "
+	    "docs/server.md. Otherwise check the network cable or Wi-Fi, then whether another "
+	    "computer in this network can open [release] url of gopura.conf.",
+	    "No response for %s%s%s.", gone, why[0] ? ": " : "", why);
+}
+
+static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
+{
 	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk_connected") == 0 &&
 	    figure(snapshot, PROGRAM_KIOSK, "gopura_kiosk_uptime_seconds") > TOGETHER_S &&
 	    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_uptime_seconds") > TOGETHER_S)
@@ -312,6 +320,7 @@ void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 	memset(out, 0, sizeof(*out));
 	judge_programs(out, snapshot);
 	judge_picture(out, snapshot);
+	judge_server(out, snapshot);
 	judge_content(out, snapshot);
 	judge_refusal(out, snapshot);
 	judge_trust(out, snapshot);

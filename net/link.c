@@ -44,10 +44,9 @@ void link_failed(struct link *link, const char *url, const char *why)
 	 * information. */
 	if (link->failures > 0 && clock_now_ms() < link->retry_at_ms)
 		return;
-	if (link->online || link->failures == 0) {
+	if (link->online || link->failures == 0)
 		log_warn("net", "offline: %s: %s", url, why);
-		metrics_refusal_note(link->refusal, url, why);
-	}
+	metrics_refusal_note(link->refusal, url, why); /* the last one is the one to be cured */
 	if (link->online)
 		link->offline_since_s = (uint64_t)clock_wall_s();
 	link->online = false;

@@ -29,7 +29,7 @@ int64_t link_pause_ms(uint32_t failures);
 void link_init(struct link *link);
 /* Any answer of the server counts, even a negative one. */
 void link_answered(struct link *link);
-/* Notes a failed request. Logs url and why for the first failure in a row. */
+/* Notes a failed request, as a refusal too. Logs url and why for the first failure in a row. */
 void link_failed(struct link *link, const char *url, const char *why);
 /* Returns whether a request may be sent now. After a failure only one at a time, after its
  * pause. */

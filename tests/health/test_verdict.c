@@ -114,6 +114,33 @@ static void a_server_away_for_five_minutes_is_a_remark(void **state)
 	CHECK(strcmp(verdict.findings[0].detail, "No response for 3 hours.") == 0);
 }
 
+static void why_a_server_is_not_reached_is_told(void **state)
+{
+	static const struct {
+		const char *refused_at, *detail;
+	} ways[] = {
+		{ "1699989060", "No response for 3 hours: certificate has expired." },
+		{ "1699980000", "No response for 3 hours." }, /* while it was reached */
+	};
+	char line[200];
+
+	(void)state;
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_offline",
+	       "gopura_fetch_offline_since_seconds 1699989000");
+	for (size_t i = 0; i < ARRAY_COUNT(ways); i++) {
+		snprintf(line, sizeof(line),
+			 "gopura_fetch_uptime_seconds 90000\ngopura_fetch_refused_at_seconds %s\n"
+			 "gopura_fetch_refusal_info{what=\"https://museum/\",why=\"certificate has "
+			 "expired\"} 1",
+			 ways[i].refused_at);
+		change(&snapshot, PROGRAM_FETCH, "gopura_fetch_uptime_seconds", line);
+		CHECK(finds(LEVEL_WARNING, "server does not respond"));
+		CHECK(strcmp(verdict.findings[0].detail, ways[i].detail) == 0);
+		change(&snapshot, PROGRAM_FETCH, "gopura_fetch_refused_at", "");
+		change(&snapshot, PROGRAM_FETCH, "gopura_fetch_refusal_info", "");
+	}
+}
+
 static void a_refusal_is_a_remark_for_a_day(void **state)
 {
 	static char text[4096];
@@ -293,6 +320,7 @@ int main(void)
 		CASE(no_touchscreen_is_ill_unless_none_was_looked_for),
 		CASE(a_slow_board_is_told_with_its_reason),
 		CASE(a_server_away_for_five_minutes_is_a_remark),
+		CASE(why_a_server_is_not_reached_is_told),
 		CASE(a_refusal_is_a_remark_for_a_day),
 		CASE(programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks),
 		CASE(heat_and_want_of_memory_have_two_degrees),

@@ -50,11 +50,29 @@ static void sends_one_request_to_look_after_a_failure(void **state)
 	CHECK(link.answers == 2 && link.errors == 3);
 }
 
+/* At a start the network may come last, so the first failure tells little. */
+static void notes_why_it_failed_last(void **state)
+{
+	struct metrics_refusal refusal = { 0 };
+	struct link link;
+
+	(void)state;
+	memset(&server, 0, sizeof(server));
+	link_init(&link);
+	link.refusal = &refusal;
+	link_failed(&link, "https://museum/", "could not resolve host");
+	server.now_ms = link.retry_at_ms;
+	link_failed(&link, "https://museum/", "certificate has expired");
+	CHECK(refusal.count == 2 && strcmp(refusal.what, "https://museum/") == 0);
+	CHECK(strcmp(refusal.why, "certificate has expired") == 0);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pauses_longer_each_time_and_never_the_same),
 		cmocka_unit_test(sends_one_request_to_look_after_a_failure),
+		cmocka_unit_test(notes_why_it_failed_last),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
