@@ -242,6 +242,9 @@ static int stage_naming(struct next *next, uint32_t version, int64_t expires_s, 
 	const uint32_t last = last_snapshot(folder);
 	int rc = check_snapshot(next);
 
+	/* The releases of others may live longer than this one. */
+	if (folder->snapshot_is_signed && expires_s < folder->snapshot.expires_s)
+		expires_s = folder->snapshot.expires_s;
 	*snapshot = last + 1 > version ? last + 1 : version;
 	if (rc < 0)
 		cJSON_Delete(content);

@@ -122,6 +122,27 @@ static void metadata_of_the_update_framework_is_signed_again_with_it(void **stat
 	}
 }
 
+/* The snapshot is that of all temples in the folder. */
+static void a_release_of_weeks_leaves_the_snapshot_its_years(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	const struct tuf_place place = published_place(&target);
+	struct publish_report report;
+	struct tuf_folder folder;
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	target.tuf_alone = true;
+	target.release_life_s = 30 * DAY_S;
+	CHECK(publish_again(&report, &target, 1) == 0);
+	CHECK(tuf_folder_open(&folder, &place) == 0);
+	CHECK(folder.top.expires_s <= clock_wall_s() + 30 * DAY_S);
+	CHECK(folder.snapshot.expires_s >=
+	      clock_wall_s() + (int64_t)RELEASE_LIFE_DAYS * DAY_S - 60);
+	tuf_folder_finish(&folder);
+}
+
 /* ---- a machine whose clock is wrong */
 
 /* What the release folder has, as text. */
@@ -222,6 +243,8 @@ int main(void)
 			a_release_that_lives_for_weeks_is_not_signed_each_night, enter, tear_down),
 		cmocka_unit_test_setup_teardown(
 			metadata_of_the_update_framework_is_signed_again_with_it, enter, tear_down),
+		cmocka_unit_test_setup_teardown(a_release_of_weeks_leaves_the_snapshot_its_years,
+						enter, tear_down),
 		cmocka_unit_test_setup_teardown(
 			a_clock_that_disagrees_with_the_last_timestamp_signs_nothing, enter,
 			tear_down),
