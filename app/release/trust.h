@@ -25,7 +25,7 @@ struct trust {
 	bool trusted;            /* root has been set */
 	uint64_t sequence_floor; /* sequence of the stored release */
 	int64_t time_floor_s;    /* when the latest timestamp.json of trust_raise_time_floor was
-				    issued,    seconds since 1970: it cannot be earlier now */
+				    issued, seconds since 1970: it cannot be earlier now */
 	struct timestamp timestamp;
 	bool have_timestamp;
 };
