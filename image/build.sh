@@ -15,6 +15,7 @@
 #                   build/image-keys, created if missing)
 #   SEQUENCE=N      of this system and its update bundle: a terminal installs none with a lower number than one it found good
 #                   (default: the time of the commit, in seconds since 1970)
+#   VERSION=TEXT    of this system (default: by git, followed by .N with SEQUENCE=N)
 #   TRACKER=FILE    of Debian's known vulnerabilities, or its address (default: that of security-tracker.debian.org); "no" for
 #                   no report
 #   BUILDER=URI     of who builds, in provenance.json
@@ -88,12 +89,11 @@ KEYS=$keys image/loader-keys.sh make 2>/dev/null
 
 # ---- root, slot and disk; all files belong to root
 say "assembling the root"
-version_text=${VERSION:-$(git describe --always --dirty)}
-sequence=${SEQUENCE:-$SOURCE_DATE_EPOCH}
+. image/version.sh
 export here out keys triplet grub loader compatible cross programs version_text sequence slot_mib boot_mib esp_mib data_mib
 KEYS=$keys fakeroot image/assemble.sh
 image/sbom.sh "$out/packages.txt" "$version_text" >"$out/sbom.spdx.json"
-image/bundle.sh "$out"
+VERSION=$version_text SEQUENCE=$sequence image/bundle.sh "$out"
 KEYS=$keys MIRROR=$mirror VERSION=$version_text SEQUENCE=$sequence \
 	image/provenance.sh make "$out" gopura.img gopura.raucb root.squashfs boot.img >"$out/provenance.json"
 rm -f "$out/vulnerabilities.txt"

@@ -4,10 +4,9 @@
 set -eu
 cd "$(dirname "$0")/.."
 . image/arch.sh
+. image/version.sh
 out=$1 keys=${keys:-${KEYS:-build/image-keys}}
 work=$out/bundle
-version=${version_text:-${VERSION:-$(git describe --always --dirty)}}
-sequence=${sequence:-${SEQUENCE:-${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}}}
 # A terminal never accepts a sequence below one that it found good. A sequence that is too high by mistake would block
 # every later update.
 case $sequence in '' | *[!0-9]*) echo "bundle: SEQUENCE must be a number, not '$sequence'" >&2; exit 1 ;; esac
@@ -15,8 +14,8 @@ case $sequence in '' | *[!0-9]*) echo "bundle: SEQUENCE must be a number, not '$
 	echo "bundle: SEQUENCE $sequence is later than tomorrow; use \$(date +%s)" >&2
 	exit 1
 }
-case $version in
-*[!A-Za-z0-9._+~-]*) echo "bundle: VERSION may contain only letters, digits and . _ + ~ -, not '$version'" >&2; exit 1 ;;
+case $version_text in
+*[!A-Za-z0-9._+~-]*) echo "bundle: VERSION may contain only letters, digits and . _ + ~ -, not '$version_text'" >&2; exit 1 ;;
 esac
 rm -rf "$work" "$out/gopura.raucb"
 mkdir -p "$work"
@@ -24,7 +23,7 @@ ln "$out/root.squashfs" "$out/boot.img" "$work/"
 cat >"$work/manifest.raucm" <<M
 [update]
 compatible=$compatible
-version=$version
+version=$version_text
 build=$sequence
 
 [bundle]

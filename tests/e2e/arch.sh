@@ -1,6 +1,6 @@
 #!/bin/bash
 # What of the image's recipe differs between architectures (image/arch.sh): an update bundle names its own, the lists of
-# kernel modules have only architectures that exist, and no other architecture is taken.
+# kernel modules have only architectures that exist, and no other architecture is taken. And bundles of one commit.
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
@@ -24,6 +24,17 @@ done
 [ "${found[*]}" = "gopura-x86-64 gopura-arm64" ] || fail "bundles are for ${found[*]}"
 # A terminal takes only bundles for what its own system.conf says, which image/assemble.sh sets in the same way.
 grep -qx 'compatible=gopura-x86-64' image/root/etc/rauc/system.conf || fail "system.conf names another architecture"
+# ---- a rebuild of the same commit with a number of its own is another version, which terminals tell systems apart by
+facts() { # facts WITH...: those of a bundle that is built so
+	env -u VERSION -u SEQUENCE ARCH=amd64 KEYS="$work/keys" "$@" image/bundle.sh "$work/amd64"
+	rauc --keyring="$work/keys/cert.pem" info --output-format=shell "$work/amd64/gopura.raucb" 2>/dev/null |
+		sed -nE "s/^RAUC_MF_(VERSION|BUILD)='(.*)'\$/\2/p" | paste -sd' '
+}
+described=$(git describe --always --dirty)
+[ "$(facts SOURCE_DATE_EPOCH=16)" = "$described 16" ] || fail "a bundle of the commit is $(facts SOURCE_DATE_EPOCH=16)"
+[ "$(facts SEQUENCE=18)" = "$described.18 18" ] || fail "a bundle with a number of its own is $(facts SEQUENCE=18)"
+[ "$(facts SEQUENCE=18 VERSION=v8)" = "v8 18" ] || fail "a bundle with a name of its own is $(facts SEQUENCE=18 VERSION=v8)"
+
 refused() { # refused WHAT SETTING...: image/build.sh says so
 	status=0
 	env "${@:2}" image/build.sh >"$work/log" 2>&1 || status=$?
