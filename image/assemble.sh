@@ -104,6 +104,7 @@ mkdir -p "$tree"/{dev,proc,sys,run,tmp,var,efi} "$tree/usr/share/gopura/board"
 install -m 644 board/*.ini "$tree/usr/share/gopura/board/"
 install -m 644 "$keys/cert.pem" "$tree/etc/rauc/keyring.pem"
 printf 'IMAGE_ID=gopura\nIMAGE_VERSION=%s\nIMAGE_SEQUENCE=%s\n' "$version_text" "$sequence" >>"$tree/usr/lib/os-release"
+: >"$tree/usr/lib/clock-epoch" # systemd sets a clock that is behind to the time of this file
 if [ -n "${RELEASE:-}" ]; then
 	cp -r "$RELEASE" "$tree/usr/share/gopura/release"
 fi

@@ -35,6 +35,14 @@ described=$(git describe --always --dirty)
 [ "$(facts SEQUENCE=18)" = "$described.18 18" ] || fail "a bundle with a number of its own is $(facts SEQUENCE=18)"
 [ "$(facts SEQUENCE=18 VERSION=v8)" = "v8 18" ] || fail "a bundle with a name of its own is $(facts SEQUENCE=18 VERSION=v8)"
 
+# ---- a terminal whose clock is years behind the certificate takes a bundle
+if command -v faketime >/dev/null; then
+	sed "s#^path=.*#path=$PWD/$work/keys/cert.pem#" image/root/etc/rauc/system.conf >"$work/system.conf"
+	faketime 2020-01-01 rauc --conf="$work/system.conf" info "$work/amd64/gopura.raucb" >"$work/log" 2>&1 || fail "a clock that is behind: $(tail -n 1 "$work/log")"
+else
+	echo "not tested, faketime is not installed: a clock that is behind"
+fi
+
 refused() { # refused WHAT SETTING...: image/build.sh says so
 	status=0
 	env "${@:2}" image/build.sh >"$work/log" 2>&1 || status=$?

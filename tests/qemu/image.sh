@@ -14,6 +14,8 @@ done
 work=build/qemu-$(basename "$image_folder")
 mkdir -p "$work"
 tests/qemu/lib-image.sh "$work/image"
+lib=$work/image/tree/usr/lib
+[ "$(stat -c %Y "$lib/clock-epoch")" = "$(stat -c %Y "$lib/os-release")" ] || { echo "a terminal's clock may be behind its image"; exit 1; }
 sticks=
 if [ "${1:-}" = updates ]; then
 	sticks=$work/sticks
