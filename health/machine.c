@@ -1,6 +1,6 @@
 /* Reads memory, temperature, disk writes, uptime and firmware slot from /proc and /sys, the room on
- * the data partition, why that is not encrypted (a note by image/init), and the file of set-up
- * faults. */
+ * the data partition, why that is not encrypted (a note by image/init), which system was found good
+ * (a note by gopura-good), and the file of set-up faults. */
 #include "health/machine.h"
 
 #include <dirent.h>
@@ -14,8 +14,9 @@
 
 enum { ZONES_MAX = 64, SECTOR_BYTES = 512 };
 
-/* Reads the beginning of a file into out, terminated; "" if it cannot be read. */
-static void read_text(char *out, size_t out_bytes, const char *root, const char *path)
+/* Reads the beginning of a file into out, terminated; "" if it cannot be read. Returns whether it
+ * could be opened. */
+static bool read_text(char *out, size_t out_bytes, const char *root, const char *path)
 {
 	char name[PATH_MAX];
 	FILE *file;
@@ -28,6 +29,7 @@ static void read_text(char *out, size_t out_bytes, const char *root, const char 
 		fclose(file);
 	}
 	out[size] = '\0';
+	return file;
 }
 
 static double number_after(const char *text, const char *word)
@@ -58,6 +60,20 @@ static void read_slot(struct machine *out, const char *root)
 	snprintf(format, sizeof(format), "rauc.slot=%%%zu[0-9A-Za-z._-]", sizeof(out->slot) - 1);
 	if (!at || sscanf(at, format, out->slot) != 1)
 		out->slot[0] = '\0';
+}
+
+/* Compares the version floor, "SEQUENCE VERSION", with the running system. */
+static void read_newer(struct machine *out, const char *root)
+{
+	char text[4096], format[32];
+	double sequence, running;
+
+	read_text(text, sizeof(text), root, "/etc/os-release");
+	running = number_after(text, "\nIMAGE_SEQUENCE=");
+	read_text(text, sizeof(text), root, "/var/lib/gopura-firmware/floor");
+	snprintf(format, sizeof(format), "%%lf %%%zus", sizeof(out->newer) - 1);
+	if (sscanf(text, format, &sequence, out->newer) != 2 || !(sequence > running))
+		out->newer[0] = '\0';
 }
 
 static double hottest_c(const char *root)
@@ -137,9 +153,10 @@ void machine_read(struct machine *out, const struct machine_options *options)
 	out->written_bytes = written_bytes(options->root);
 	read_memory(out, options->root);
 	read_slot(out, options->root);
+	read_newer(out, options->root);
 	read_data(out, options->data);
 	read_text(out->data_plain, sizeof(out->data_plain), options->root,
 		  "/run/gopura-data-plain");
 	out->data_plain[strcspn(out->data_plain, "\n")] = '\0';
-	read_text(out->faults, sizeof(out->faults), "", options->faults);
+	out->is_set_up = read_text(out->faults, sizeof(out->faults), "", options->faults);
 }

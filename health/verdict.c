@@ -300,6 +300,22 @@ static void judge_machine(struct verdict *verdict, const struct snapshot *snapsh
 		    "%s", "");
 }
 
+/* Judges the system of an appliance, which has a slot. */
+static void judge_system(struct verdict *verdict, const struct machine *m)
+{
+	if (m->slot[0] && m->newer[0])
+		add(verdict, LEVEL_WARNING, "An older system runs",
+		    "A newer one was good here, but no longer starts, or the power was cut several times "
+		    "soon after a start. Leave the terminal on for ten minutes, then switch it off and on. "
+		    "If this message stays, install the newer system again from a stick.",
+		    "The newer one is %s.", m->newer);
+	if (m->slot[0] && !m->is_set_up)
+		add(verdict, LEVEL_WARNING, "gopura.conf was not applied",
+		    "Network, museum server and name may be missing. Switch the terminal off and on. If this "
+		    "message stays, save the output of journalctl -u gopura-setup and contact the installer.",
+		    "%s", "");
+}
+
 /* gopura-setup writes one line for each entry of gopura.conf that it could not apply. */
 static void judge_faults(struct verdict *verdict, const char *faults)
 {
@@ -325,6 +341,7 @@ void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 	judge_refusal(out, snapshot);
 	judge_trust(out, snapshot);
 	judge_machine(out, snapshot);
+	judge_system(out, &snapshot->machine);
 	judge_restart(out, snapshot, PROGRAM_KIOSK, "gopura_kiosk_starts_total",
 		      "gopura_kiosk_uptime_seconds", "The display program was restarted");
 	judge_restart(out, snapshot, PROGRAM_FETCH, "gopura_fetch_starts_total",

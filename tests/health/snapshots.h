@@ -49,6 +49,7 @@ static inline void make_well(struct snapshot *snapshot)
 	snapshot->machine = (struct machine){
 		.name = "terminal-<3>",
 		.slot = "A",
+		.is_set_up = true,
 		.uptime_s = 90100,
 		.temperature_c = 55,
 		.memory_bytes = 2e9,

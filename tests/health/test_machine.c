@@ -61,7 +61,7 @@ static void what_is_not_there_is_not_told(void **state)
 	CHECK(isnan(m.uptime_s) && isnan(m.temperature_c) && isnan(m.memory_bytes));
 	CHECK(isnan(m.memory_free_bytes) && isnan(m.written_bytes));
 	CHECK(m.slot[0] == '\0' && m.faults[0] == '\0' && m.name[0] != '\0');
-	CHECK(m.data_plain[0] == '\0');
+	CHECK(m.data_plain[0] == '\0' && m.newer[0] == '\0' && !m.is_set_up);
 	CHECK(m.data_bytes > m.data_free_bytes && m.data_free_bytes > 0);
 	machine_read(&m, &(struct machine_options){ root, "/nowhere", "/nowhere" });
 	CHECK(isnan(m.data_bytes) && isnan(m.data_free_bytes));
@@ -92,8 +92,30 @@ static void the_kernels_files_are_understood(void **state)
 	CHECK(strcmp(m.slot, "B") == 0);
 	CHECK(m.temperature_c == 63.25);
 	CHECK(m.written_bytes == 1024 * 512);
-	CHECK(strcmp(m.faults, "gopura.conf, line 3: what\n") == 0);
+	CHECK(strcmp(m.faults, "gopura.conf, line 3: what\n") == 0 && m.is_set_up);
 	CHECK(strcmp(m.data_plain, "No TPM.") == 0);
+}
+
+static void an_older_system_than_was_good_here_is_told(void **state)
+{
+	struct machine m;
+
+	(void)state;
+	write_file("/etc/os-release", "ID=debian\nIMAGE_VERSION=v100\nIMAGE_SEQUENCE=100\n");
+	write_file("/var/lib/gopura-firmware/floor", "120 v120\n");
+	read_it(&m);
+	CHECK(strcmp(m.newer, "v120") == 0);
+	write_file("/var/lib/gopura-firmware/floor", "100 v100\n");
+	read_it(&m);
+	CHECK(m.newer[0] == '\0');
+	write_file("/etc/os-release", "ID=debian\n"); /* not an appliance */
+	write_file("/var/lib/gopura-firmware/floor", "120 v120\n");
+	read_it(&m);
+	CHECK(m.newer[0] == '\0');
+	write_file("/etc/os-release", "ID=debian\nIMAGE_SEQUENCE=100\n");
+	write_file("/var/lib/gopura-firmware/floor", "12x");
+	read_it(&m);
+	CHECK(m.newer[0] == '\0');
 }
 
 static void long_files_are_cut(void **state)
@@ -118,6 +140,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_not_there_is_not_told),
 		cmocka_unit_test(the_kernels_files_are_understood),
+		cmocka_unit_test(an_older_system_than_was_good_here_is_told),
 		cmocka_unit_test(long_files_are_cut),
 	};
 

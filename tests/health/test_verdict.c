@@ -264,6 +264,24 @@ static void data_that_should_be_encrypted_and_is_not_is_a_warning(void **state)
 	CHECK(strcmp(verdict.findings[0].detail, "No TPM.") == 0);
 }
 
+static void an_older_system_than_was_good_here_is_a_warning(void **state)
+{
+	(void)state;
+	snprintf(snapshot.machine.newer, sizeof(snapshot.machine.newer), "v120");
+	CHECK(finds(LEVEL_WARNING, "An older system runs"));
+	CHECK(strcmp(verdict.findings[0].detail, "The newer one is v120.") == 0);
+}
+
+static void a_terminal_without_settings_is_a_warning(void **state)
+{
+	(void)state;
+	snapshot.machine.is_set_up = false;
+	CHECK(finds(LEVEL_WARNING, "gopura.conf was not applied"));
+	snapshot.machine.slot[0] = '\0'; /* a desk computer, which has none */
+	verdict_judge(&verdict, &snapshot);
+	CHECK(verdict.count == 0);
+}
+
 static void each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first(void **state)
 {
 	(void)state;
@@ -330,6 +348,8 @@ int main(void)
 		CASE(a_clock_that_nobody_set_judges_no_expiry),
 		CASE(data_that_should_be_encrypted_and_is_not_is_a_warning),
 		CASE(each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first),
+		CASE(an_older_system_than_was_good_here_is_a_warning),
+		CASE(a_terminal_without_settings_is_a_warning),
 		CASE(more_faults_than_have_room_leave_what_is_ill),
 		CASE(durations_are_in_the_unit_that_says_most),
 	};
