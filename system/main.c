@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/safe_open.h"
+#include "base/transient.h"
 #include "system/grow.h"
 #include "system/setup.h"
 
@@ -29,7 +30,8 @@ static const char help[] =
 	"  --boards DIR     board profiles that gopura.conf may name\n"
 	"                   (default: /usr/share/gopura/board)\n"
 	"  --check FILE     print the faults of the file; exit status 1 if there are any\n"
-	"  --checksum FILE  print a checksum of the file and the files that it names\n"
+	"  --checksum FILE  print a checksum of the file and the files that it names; exit status 1\n"
+	"                   if it cannot be read, 2 if that may pass\n"
 	"  --grow DISK      enlarge the last partition of the disk, NAME, to the end of the disk\n"
 	"  --grow-files DEVICE\n"
 	"                   enlarge the ext4 file system on the device, mounted at DIR, to its end\n"
@@ -211,7 +213,7 @@ static int print_sum(const char *path)
 		fprintf(stderr, "gopura-setup: %s: %s\n", path, open_problem(rc));
 	else
 		puts(sum);
-	return rc < 0;
+	return rc == 0 ? 0 : is_transient(rc) ? 2 : 1;
 }
 
 static int apply(const struct command *command)

@@ -16,6 +16,7 @@
 #include <sodium.h>
 
 #include "base/safe_open.h"
+#include "base/transient.h"
 #include "system/terminal_values.h"
 
 const struct terminal terminal_default = {
@@ -406,9 +407,14 @@ int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES])
 	if (rc == 0) {
 		sum_file(&sum, &file);
 		terminal_parse(&terminal, buffer_bytes(&file), &ignored);
-		for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
-			if (!*names[i] || terminal_read_beside(&file, path, names[i]) < 0)
+		for (size_t i = 0; i < ARRAY_COUNT(names) && rc == 0; i++) {
+			const int read =
+				*names[i] ? terminal_read_beside(&file, path, names[i]) : -ENOENT;
+
+			if (read < 0)
 				buffer_clear(&file);
+			if (is_transient(read))
+				rc = read;
 			sum_file(&sum, &file);
 		}
 		crypto_generichash_final(&sum, digest, sizeof(digest));

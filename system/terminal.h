@@ -104,8 +104,9 @@ must_check int terminal_read_beside(struct buffer *out, const char *path, const 
 /* Length of a checksum as hexadecimal text, with its end. */
 enum { TERMINAL_SUM_BYTES = 65 };
 /* Writes a checksum over the gopura.conf at `path` and the files that it names, as hexadecimal
- * text: equal contents give equal sums. A named file that cannot be read counts as empty. Errors:
- * those of base/safe_open.h, for gopura.conf itself. */
+ * text: equal contents give equal sums. A named file that cannot be read counts as empty, unless
+ * the next try may work (base/transient.h). Errors: those, and for gopura.conf itself those of
+ * base/safe_open.h. */
 must_check int terminal_sum(const char *path, char out[TERMINAL_SUM_BYTES]);
 /* Length of the result of terminal_usb_words, with its end. */
 enum { TERMINAL_USB_WORDS_BYTES = 64 };

@@ -25,8 +25,18 @@ case "\$*" in
 *iwd*) exit 1 ;; # whoever fails
 esac
 END
-ln -s "$PWD/build/gopura-setup" "$work/bin/gopura-setup"
-chmod +x "$work/set-up" "$work/bin/systemctl"
+# With ILL=pulled the stick is gone when it is read, with ILL=N that call of open, read and others fails.
+shim=$PWD/build/tests/tools/failing_calls.so
+cat >"$work/bin/gopura-setup" <<END
+#!/bin/sh
+case "\${ILL:-}" in
+pulled) mv "$work/stick/gopura.conf" "$work/pocket" ;;
+[0-9]*) export LD_PRELOAD="$shim" FAIL_KIND=io FAIL_AT=\$ILL ;;
+esac
+exec "$PWD/build/gopura-setup" "\$@"
+END
+printf '#!/bin/sh\n' >"$work/bin/sleep"
+chmod +x "$work/set-up" "$work"/bin/*
 
 # plugged: as gopura-conf.service does when a stick came, and gopura-apply.service after it where its condition holds
 plugged() {
@@ -53,6 +63,15 @@ asked '^restart .*systemd-networkd' || fail "the network is as it was"
 
 plugged
 [ ! -s "$work/asked" ] || fail "the same stick once more disturbed: $(cat "$work/asked")"
+# A loose contact: the stick is gone again while it is read.
+ILL=pulled plugged
+[ ! -s "$work/asked" ] && [ ! -e "$work/stick/gopura.conf" ] || fail "a stick that was pulled out took its settings along: $(cat "$work/asked")"
+mv "$work/pocket" "$work/stick/gopura.conf"
+for call in $(seq 40); do
+	ILL=$call plugged
+	[ ! -s "$work/asked" ] || fail "what cannot be read for a moment took the settings away: call $call: $(cat "$work/said")"
+done
+grep -q 'is in use already' "$work/said" || fail "there are more calls: $(cat "$work/said")"
 echo another >"$work/stick/ca.pem"
 plugged
 asked gopura-kiosk.service || fail "another authority beside the same gopura.conf was not taken"
