@@ -10,6 +10,8 @@ mkdir -p "$work"/{bin,efi,stick,out}
 script=$PWD/image/root/usr/lib/gopura/gopura-conf
 conf=("$work/efi/gopura.conf" "$work/stick/gopura.conf")
 
+sed "s#/run/gopura/#$work/out/#" "${script%conf}apply" >"$work/apply"
+
 # What gopura-setup.service does when it is started; the others are only named.
 cat >"$work/set-up" <<END
 #!/bin/sh
@@ -21,7 +23,10 @@ cat >"$work/bin/systemctl" <<END
 #!/bin/sh
 echo "\$@" >>"$work/asked"
 case "\$*" in
-"restart gopura-setup.service") exec "$work/set-up" ;;
+"restart gopura-setup.service")
+	[ ! -e "$work/unable" ] || { "$work/unable"; exit 1; }
+	exec "$work/set-up"
+	;;
 *iwd*) exit 1 ;; # whoever fails
 esac
 END
@@ -43,9 +48,10 @@ plugged() {
 	: >"$work/asked"
 	PATH=$work/bin:$PATH "$script" apply "${conf[@]}" "$work/out" >"$work/said" 2>&1 || fail "apply: $(cat "$work/said")"
 	[ ! -s "$work/asked" ] || fail "who reads the stick's text gives orders to the service manager: $(cat "$work/asked")"
-	[ ! -e "$work/out/apply" ] || PATH=$work/bin:$PATH "${script%conf}apply" || fail "a new gopura.conf is not applied"
+	[ ! -e "$work/out/apply" ] || applied || fail "a new gopura.conf is not applied"
 	[ ! -e "$work/out/apply" ] || fail "it would be applied again and again"
 }
+applied() { PATH=$work/bin:$PATH sh "$work/apply"; }
 asked() { grep -q -- "$1" "$work/asked"; }
 host() { cat "$work/out/hostname"; }
 
@@ -75,6 +81,21 @@ grep -q 'is in use already' "$work/said" || fail "there are more calls: $(cat "$
 echo another >"$work/stick/ca.pem"
 plugged
 asked gopura-kiosk.service || fail "another authority beside the same gopura.conf was not taken"
+
+# gopura-setup fails, once and then always: the panel hears of it anyway.
+for unable in "rm $work/unable" true; do
+	echo "$unable" >"$work/unable"
+	chmod +x "$work/unable"
+	: >"$work/out/apply"
+	: >"$work/asked"
+	status=0
+	applied || status=$?
+	asked gopura-kiosk.service || fail "the panel cannot show why nothing was applied: $(cat "$work/asked")"
+	[ "$(grep -c 'restart gopura-setup' "$work/asked")" = 2 ] || fail "what failed is not tried again: $(cat "$work/asked")"
+	[ "$unable" = true ] || { [ $status = 0 ] && [ ! -e "$work/out/apply" ]; } || fail "the second try is not applied"
+done
+[ "$status" = 1 ] && [ -e "$work/out/apply" ] || fail "what failed counts as applied"
+rm "$work/unable" "$work/out/apply"
 
 # Its errors are reported, and its valid lines are applied.
 sed -i -e 's/^name .*/name = West gate/' -e 's/^rotation .*/rotation = 45/' "$work/stick/gopura.conf"
