@@ -18,7 +18,7 @@
 
 enum { FILE_MAX = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
 
-/* ---- files: the first failure is kept, and later writes do nothing */
+/* ---- files: the first failure is kept; what comes later neither writes nor deletes anything */
 
 struct writing {
 	const struct setup *setup;
@@ -62,13 +62,24 @@ static void finish_file(struct writing *writing, const char *name)
 	buffer_clear(&writing->text);
 }
 
-/* Deletes the files that an earlier gopura.conf produced. */
+/* Deletes a file that an earlier gopura.conf produced. */
+static void remove_file(struct writing *writing, const char *name)
+{
+	char path[PATH_MAX];
+
+	path_of(writing, name, path);
+	if (writing->rc == 0)
+		unlink(path);
+}
+
 static void empty_folder(struct writing *writing, const char *name)
 {
 	char path[PATH_MAX];
 	struct dirent *entry;
 	DIR *files;
 
+	if (writing->rc < 0)
+		return;
 	path_of(writing, name, path);
 	files = opendir(path);
 	while (files && (entry = readdir(files)))
@@ -102,7 +113,7 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 	folder(writing, "conf", 0755);
 	path_of(writing, "conf/ca.pem", path);
 	if (!setup->terminal->ca[0] || !setup->conf_path) {
-		unlink(path);
+		remove_file(writing, "conf/ca.pem");
 		return false;
 	}
 	buffer_init(&file, TERMINAL_FILE_BYTES_MAX);
@@ -296,13 +307,11 @@ static void write_wifi(struct writing *writing)
 {
 	const struct terminal *t = writing->setup->terminal;
 	char name[SETUP_WIFI_NAME_BYTES], path[sizeof("iwd/") + SETUP_WIFI_NAME_BYTES];
-	char network[PATH_MAX];
 
 	folder(writing, "iwd", 0700); /* only root may read passphrases */
 	empty_folder(writing, "iwd");
 	if (!t->ssid[0]) {
-		path_of(writing, "network/20-wifi.network", network);
-		unlink(network);
+		remove_file(writing, "network/20-wifi.network");
 		return;
 	}
 	if (strlen(t->passphrase) == 64) {

@@ -16,8 +16,9 @@ sed "s#/run/gopura/#$work/out/#" "${script%conf}apply" >"$work/apply"
 cat >"$work/set-up" <<END
 #!/bin/sh
 set -e
-"$PWD/build/gopura-setup" --conf "${conf[0]}" --conf "${conf[1]}" --boards "$PWD/board" --out "$work/out"
-PATH=$work/bin:\$PATH "$script" note "${conf[0]}" "${conf[1]}" "$work/out"
+PATH=$work/bin:\$PATH
+"$script" write "${conf[0]}" "${conf[1]}" "$work/out"
+"$script" note "${conf[0]}" "${conf[1]}" "$work/out"
 END
 cat >"$work/bin/systemctl" <<END
 #!/bin/sh
@@ -30,10 +31,13 @@ case "\$*" in
 *iwd*) exit 1 ;; # whoever fails
 esac
 END
-# With ILL=pulled the stick is gone when it is read, with ILL=N that call of open, read and others fails.
+# With ILL=pulled the stick is gone when it is read, with ILL=N that call of open, read and others fails; while there
+# are lines in failures, it fails and takes one away.
 shim=$PWD/build/tests/tools/failing_calls.so
 cat >"$work/bin/gopura-setup" <<END
 #!/bin/sh
+[ ! -s "$work/failures" ] || { sed -i 1d "$work/failures"; exit 1; }
+case \$1 in --conf) set -- "\$@" --boards "$PWD/board" ;; esac
 case "\${ILL:-}" in
 pulled) mv "$work/stick/gopura.conf" "$work/pocket" ;;
 [0-9]*) export LD_PRELOAD="$shim" FAIL_KIND=io FAIL_AT=\$ILL ;;
@@ -55,7 +59,11 @@ applied() { PATH=$work/bin:$PATH sh "$work/apply"; }
 asked() { grep -q -- "$1" "$work/asked"; }
 host() { cat "$work/out/hostname"; }
 
-"$work/set-up" 2>"$work/log"
+printf 'once\ntwice\nalways\n' >"$work/failures"
+: >"$work/out/faults"
+! "$work/set-up" 2>"$work/log" && [ ! -e "$work/out/faults" ] || fail "gopura-setup failed three times, and nobody knows"
+printf 'once\ntwice\n' >"$work/failures"
+"$work/set-up" 2>"$work/log" || fail "two failures left a terminal without settings"
 [ "$(host)" = gopura ] || fail "a terminal without a gopura.conf is called $(host)"
 
 cp system/gopura.conf.example "$work/stick/gopura.conf"

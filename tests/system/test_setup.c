@@ -206,6 +206,28 @@ static void says_where_it_cannot_write(void **state)
 	CHECK(setup_write(&setup) < 0);
 }
 
+static void what_cannot_be_written_takes_nothing_else_away(void **state)
+{
+	static struct terminal terminal;
+	static struct diagnostics diagnostics = { .max = SETTINGS_DIAGNOSTICS_MAX };
+	const struct setup setup = { .terminal = &terminal,
+				     .diagnostics = &diagnostics,
+				     .out = out };
+	char path[256], inside[300];
+
+	(void)state;
+	apply(RELEASE "ca = ca.pem\n[wifi]\nssid = Museum\npassphrase = 12345678\ncountry = KH\n"
+		      "[health]\nlisten = 0.0.0.0:9200\nmdns = yes\n");
+	terminal = terminal_default;
+	path_of("faults", path); /* a folder there cannot be replaced by a file */
+	snprintf(inside, sizeof(inside), "%s/x", path);
+	CHECK(unlink(path) == 0 && mkdir(path, 0700) == 0 && mkdir(inside, 0700) == 0);
+	CHECK(setup_write(&setup) < 0);
+	CHECK(rmdir(inside) == 0 && rmdir(path) == 0);
+	CHECK(is_there("iwd/Museum.psk") && is_there("network/20-wifi.network"));
+	CHECK(is_there("dnssd/gopura-health.dnssd") && is_there("conf/ca.pem"));
+}
+
 static void every_profile_that_comes_along_is_right(void **state)
 {
 	DIR *files = opendir("board");
@@ -592,6 +614,7 @@ int main(void)
 		cmocka_unit_test(what_usb_may_bring_is_nothing_unless_it_is_named),
 		cmocka_unit_test(faults_are_written_a_line_each_and_the_rest_holds),
 		cmocka_unit_test(says_where_it_cannot_write),
+		cmocka_unit_test(what_cannot_be_written_takes_nothing_else_away),
 		cmocka_unit_test(every_profile_that_comes_along_is_right),
 	};
 
