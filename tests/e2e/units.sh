@@ -46,6 +46,14 @@ for file in systemd/*.service; do
 	grep -q '^MemoryMax=' "$file" && grep -q '^TasksMax=' "$file" || { echo "$file: no MemoryMax= or TasksMax="; failed=1; }
 done
 
+# What a loose contact or a request from the network starts is never refused for having started often; and a health
+# page that fails takes a pause.
+for name in stick@ conf bundle apply firmware health; do
+	grep -qx 'StartLimitIntervalSec=0' "systemd/gopura-$name.service" || { echo "gopura-$name.service: it does not start often"; failed=1; }
+done
+grep -qx 'TriggerLimitIntervalSec=0' systemd/gopura-health.socket && grep -qE '^RestartSec=[1-9]' systemd/gopura-health.service ||
+	{ echo "gopura-health.socket: it ends for good"; failed=1; }
+
 # Filters of system calls are what systemd calls a service's, less an explicit list.
 for unit in systemd/*.service; do
 	grep -q '^SystemCallFilter=@system-service$' "$unit" ||
