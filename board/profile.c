@@ -15,7 +15,7 @@ const struct profile profile_default = {
 	.error_px = 2,
 	.upload_us = 4000,
 	.workers = 2,
-	.cache_mib = 256,
+	.cache_mib = 1024,
 };
 
 static bool set_float(const struct setting *setting, void *target, const char *value)

@@ -265,7 +265,7 @@ static void send_status(struct fetch *fetch)
 	status->wanted = downloader_wanted(fetch->downloader);
 	status->received_bytes = http_received_bytes(fetch->http);
 	status->cache_bytes = cache_file_bytes(fetch->cache);
-	status->cache_budget_bytes = fetch->options->cache_budget_bytes;
+	status->cache_budget_bytes = cache_budget_bytes(fetch->cache);
 	status->offline_since_s = fetch->link.offline_since_s;
 	if (memcmp(status, &fetch->sent_status, sizeof(*status)) == 0 &&
 	    clock_now_ms() < fetch->sent_status_ms + ALIVE_MS) {
@@ -330,7 +330,7 @@ static void write_metrics(void *data, struct buffer *out)
 	metrics_gauge(out, "gopura_fetch_cache_bytes", "Size of the cache on disk.",
 		      (double)cache_file_bytes(fetch->cache));
 	metrics_gauge(out, "gopura_fetch_cache_budget_bytes", "Maximum size of the cache.",
-		      (double)fetch->options->cache_budget_bytes);
+		      (double)cache_budget_bytes(fetch->cache));
 	metrics_counter(out, "gopura_fetch_cache_refused_total", "Failed writes to the cache.",
 			(double)cache_refused_writes(fetch->cache));
 	write_refusal(&fetch->refusal, out);

@@ -3,10 +3,12 @@
 #include "storage/cache.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 
 #include "base/log.h"
 #include "storage/cache_file.h"
@@ -48,6 +50,26 @@ static sqlite3_stmt *bound_to_hash(struct cache *cache, enum statement which,
 	return statement;
 }
 
+/* Returns the budget asked for, within what the file system can give: the state, the journal and
+ * others are on it too. */
+static uint64_t budget_of(const struct cache_options *options)
+{
+	const char *slash = strrchr(options->path, '/');
+	char folder[PATH_MAX] = ".";
+	uint64_t budget = options->budget_bytes, most;
+	struct statvfs disk;
+
+	if (slash)
+		snprintf(folder, sizeof(folder), "%.*s", (int)(slash - options->path + 1),
+			 options->path);
+	if (statvfs(folder, &disk) == 0) {
+		most = (uint64_t)disk.f_blocks * disk.f_frsize / 100 * CACHE_DISK_PERCENT;
+		if (budget > most)
+			budget = most;
+	}
+	return budget < CACHE_BUDGET_MIN ? CACHE_BUDGET_MIN : budget;
+}
+
 int cache_create(struct cache **out, const struct cache_options *options)
 {
 	struct cache *cache = calloc(1, sizeof(*cache));
@@ -60,8 +82,7 @@ int cache_create(struct cache **out, const struct cache_options *options)
 		free(cache);
 		return -ENOMEM;
 	}
-	cache->budget_bytes =
-		options->budget_bytes < CACHE_BUDGET_MIN ? CACHE_BUDGET_MIN : options->budget_bytes;
+	cache->budget_bytes = budget_of(options);
 	cache->log_bytes = cache->budget_bytes / 8;
 	if (cache->log_bytes > LOG_BYTES_MAX)
 		cache->log_bytes = LOG_BYTES_MAX;
@@ -345,6 +366,11 @@ static uint64_t size_of_file(const char *path, const char *suffix)
 uint64_t cache_file_bytes(const struct cache *cache)
 {
 	return size_of_file(cache->path, "") + size_of_file(cache->path, "-wal");
+}
+
+uint64_t cache_budget_bytes(const struct cache *cache)
+{
+	return cache->budget_bytes;
 }
 
 uint64_t cache_refused_writes(const struct cache *cache)

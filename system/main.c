@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "base/safe_open.h"
 #include "base/transient.h"
+#include "board/profile.h"
 #include "system/grow.h"
 #include "system/setup.h"
 
@@ -216,6 +217,18 @@ static int print_sum(const char *path)
 	return rc == 0 ? 0 : is_transient(rc) ? 2 : 1;
 }
 
+/* Returns what the profile of the terminal's board says of the cache; 0 if there is none. */
+static uint32_t cache_mib(const struct terminal *terminal, const char *boards)
+{
+	struct profile profile;
+	char path[PATH_MAX];
+
+	if (!terminal->board[0])
+		return 0;
+	snprintf(path, sizeof(path), "%s/%s.ini", boards, terminal->board);
+	return profile_read(&profile, path) == 0 ? profile.cache_mib : 0;
+}
+
 static int apply(const struct command *command)
 {
 	static struct terminal terminal;
@@ -238,6 +251,8 @@ static int apply(const struct command *command)
 				command->confs[0]);
 	for (unsigned i = 0; i < diagnostics.count; i++)
 		log_warn("setup", "%s", diagnostics_get(&diagnostics, i)->text);
+	if (setup.conf_path)
+		setup.cache_mib = cache_mib(&terminal, command->boards);
 	rc = setup_write(&setup);
 	diagnostics_finish(&diagnostics);
 	return rc < 0;

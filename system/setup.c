@@ -174,6 +174,8 @@ static void write_fetcher(struct writing *writing)
 	if (t->release_url[0] && !terminal_url_is_of_stick(t->release_url))
 		buffer_print(&writing->text, "RELEASE_URL=\"%s\"\n", t->release_url);
 	buffer_print(&writing->text, "FETCH_OPTIONS=\"");
+	if (writing->setup->cache_mib > 0)
+		buffer_print(&writing->text, " --cache-budget %u", writing->setup->cache_mib);
 	if (t->poll_s > 0)
 		buffer_print(&writing->text, " --poll-s %u", t->poll_s);
 	if (t->rate_limit_kib > 0)

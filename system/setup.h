@@ -11,6 +11,7 @@ struct setup {
 	const struct diagnostics *diagnostics;
 	const char *conf_path; /* the file that was read; NULL: none was found */
 	const char *out;       /* the folder; created if missing */
+	uint32_t cache_mib;    /* of the board profile; 0: the fetcher's default */
 };
 
 /* Writes all files. Each is complete or unchanged. Returns 0, or the negative errno of the first

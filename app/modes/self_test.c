@@ -25,6 +25,7 @@
 #include "render/display/display.h"
 #include "render/display/gl.h"
 #include "render/display/quads.h"
+#include "storage/cache.h"
 #include "storage/state.h"
 #include "tuf/tuf_metadata.h"
 
@@ -284,8 +285,12 @@ static int write_probe(const char *folder)
 
 /* Returns the free space that the state folder still needs, in MiB. The cache counts only if this
  * kiosk starts the fetcher, less what it already occupies. */
-static uint64_t room_needed_mib(const struct self_test *test)
+static uint64_t room_needed_mib(const struct self_test *test, const struct statvfs *disk)
 {
+	const uint64_t most_mib =
+		(uint64_t)disk->f_blocks * disk->f_frsize / 100 * CACHE_DISK_PERCENT >> 20;
+	const uint64_t cache_mib =
+		test->profile.cache_mib < most_mib ? test->profile.cache_mib : most_mib;
 	char path[PATH_MAX + 16];
 	struct stat cache;
 	uint64_t has_mib = 0;
@@ -295,8 +300,7 @@ static uint64_t room_needed_mib(const struct self_test *test)
 	snprintf(path, sizeof(path), "%s/cache.db", test->folder);
 	if (stat(path, &cache) == 0)
 		has_mib = (uint64_t)cache.st_size >> 20;
-	return STATE_ROOM_MIB +
-	       (test->profile.cache_mib > has_mib ? test->profile.cache_mib - has_mib : 0);
+	return STATE_ROOM_MIB + (cache_mib > has_mib ? cache_mib - has_mib : 0);
 }
 
 static void check_storage(struct self_test *test)
@@ -318,7 +322,7 @@ static void check_storage(struct self_test *test)
 		return;
 	}
 	free_mib = (uint64_t)disk.f_bavail * disk.f_frsize >> 20;
-	needed_mib = room_needed_mib(test);
+	needed_mib = room_needed_mib(test, &disk);
 	if (free_mib < needed_mib)
 		say(test, false, "storage",
 		    "%s: %" PRIu64 " MiB free, %" PRIu64

@@ -31,6 +31,10 @@ grep -q "^line $line: rotation" "$work/out/faults" || fail "the faults are not w
 # What a unit reads of it is what systemd takes for words.
 sh -c '. "$1"; [ "$RELEASE_URL" = https://museum.example/temple/ ] && case $FETCH_OPTIONS in *"--ca $2/out/conf/ca.pem"*) ;; *) exit 1 ;; esac' \
 	sh "$work/out/fetch.env" "$(realpath "$work")" || fail "fetch.env: $(cat "$work/out/fetch.env")"
+cp -r board "$work/boards"
+printf '[cache]\nmib = 300\n' >>"$work/boards/generic.ini"
+[ "$(status $setup --conf "$work/gopura.conf" --boards "$work/boards" --out "$work/out")" = 0 ] || fail "$(cat "$work/said")"
+grep -q -- '--cache-budget 300 ' "$work/out/fetch.env" || fail "the profile's cache does not hold: $(cat "$work/out/fetch.env")"
 cmp "$work/ca.pem" "$work/out/conf/ca.pem" || fail "the authority is gone with the stick that it came from"
 [ "$(stat -c %a "$work/out/iwd")" = 700 ] || fail "the Wi-Fi's passphrase is everybody's"
 

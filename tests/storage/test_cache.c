@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/clock.h"
@@ -33,6 +34,17 @@ int64_t clock_thread_us(void)
 int64_t clock_wall_s(void)
 {
 	return 0;
+}
+
+/* The size of the disk, or how its file system fails. */
+static uint64_t disk_bytes = UINT64_C(1) << 40;
+static int disk_rc;
+
+int statvfs(const char *name, struct statvfs *out)
+{
+	CHECK(strstr(name, "/gopura-cache-") || strstr(name, "/nonexistent/"));
+	*out = (struct statvfs){ .f_frsize = 4096, .f_blocks = disk_bytes / 4096 };
+	return disk_rc;
 }
 
 static char folder[64], path[96];
@@ -578,6 +590,30 @@ static void tolerates_a_disk_that_stays_full(void **state)
 	cache_destroy(cache);
 }
 
+static void takes_no_more_than_its_share_of_the_disk(void **state)
+{
+	struct cache *cache;
+
+	(void)state;
+	disk_bytes = 100 << 20;
+	cache = open_cache(UINT64_C(1) << 30);
+	CHECK(cache_budget_bytes(cache) == 60 << 20);
+	cache_destroy(cache);
+	cache = open_cache(50 << 20);
+	CHECK(cache_budget_bytes(cache) == 50 << 20);
+	cache_destroy(cache);
+	disk_bytes = 1 << 20;
+	cache = open_cache(50 << 20);
+	CHECK(cache_budget_bytes(cache) == CACHE_BUDGET_MIN);
+	cache_destroy(cache);
+	disk_rc = -1; /* nobody knows how large it is */
+	cache = open_cache(50 << 20);
+	CHECK(cache_budget_bytes(cache) == 50 << 20);
+	cache_destroy(cache);
+	disk_bytes = UINT64_C(1) << 40;
+	disk_rc = 0;
+}
+
 static void lives_without_a_file(void **state)
 {
 	struct cache_options options = { .path = "/nonexistent/cache.db", .budget_bytes = 1 };
@@ -621,6 +657,7 @@ int main(void)
 		IN_A_FOLDER(goes_on_after_any_write_failed),
 		IN_A_FOLDER(takes_no_failed_read_for_damage),
 		IN_A_FOLDER(tolerates_a_disk_that_stays_full),
+		IN_A_FOLDER(takes_no_more_than_its_share_of_the_disk),
 		IN_A_FOLDER(lives_without_a_file),
 	};
 

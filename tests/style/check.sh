@@ -19,7 +19,8 @@ may_include() { # its answer is in $answer: a subshell for each of thousands of 
 	answer=
 	case $1 in
 	base) ;;
-	format | board | input | sound | health | system) answer="base" ;;
+	format | board | input | sound | health) answer="base" ;;
+	system) answer="base board" ;;
 	tuf) answer="base" ;;
 	geometry | ui) answer="base format" ;;
 	render | storage) answer="base format geometry" ;;
