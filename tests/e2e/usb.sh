@@ -22,6 +22,8 @@ case $2 in
 *radio*) echo rtl8xxxu ;;
 *displaylink*) echo udl ;;
 *strange*) echo strange ;;
+*killed*) kill -KILL $$ ;;
+*half*) echo usb_storage; kill -KILL $$ ;;
 *) exit 1 ;;
 esac
 P
@@ -91,6 +93,20 @@ device "ff 00 00 radio"; judged "a radio" 0
 device "ff 00 00 displaylink"; judged "a panel" 0
 device "0e 01 00"; judged "a camera, for which there is no driver" 1
 device "08 06 50 strange" && sed -i s/ic08// "$folder"/*:*/modalias; judged "what only an unknown driver wants" 0
+# ---- what cannot be judged is refused
+device "ff 00 00 killed"; judged "a device whose drivers are not known" 0
+grep -q "1-$devices:1.0 () is not taken up: nothing could be found out about it" "$work/said" || fail "nobody was told why: $(tail -n 1 "$work/said")"
+device "ff 00 00 half"; judged "a device of whose drivers half are known" 0
+device "$stick" && rm "$folder"/*:*/modalias; judged "a device that does not say what it is" 0
+device "$hid" && rm "$folder"/*:*/bInterfaceProtocol; judged "HID that does not say what it is" 0
+(
+	mkdir -p "$work/without"
+	printf '#!/bin/sh\nexit 127\n' >"$work/without/modprobe"
+	chmod +x "$work/without/modprobe"
+	PATH=$work/without:$PATH
+	device "$stick"; judged "a stick, without modprobe" 0
+)
+devices=$((devices + 1))
 grep -q "1-6:1.0 () is not taken up: keyboard; allow it in gopura.conf, under \[usb\]" "$work/said" || fail "nobody was told of the keyboard"
 
 # ---- what gopura.conf allows, and nothing else
