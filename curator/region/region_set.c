@@ -138,6 +138,12 @@ bool region_set_redo(struct region_set *set)
 	return true;
 }
 
+void region_set_forget(struct region_set *set)
+{
+	drop_steps(set, 0);
+	set->done_count = 0;
+}
+
 /* ---- rings */
 
 /* Puts every triangle that shares a vertex with one that is (inside) or is not in the region. */

@@ -47,6 +47,8 @@ must_check int region_set_commit(struct region_set *set);
 /* Return false if there is nothing to undo or redo. */
 bool region_set_undo(struct region_set *set);
 bool region_set_redo(struct region_set *set);
+/* Forgets all steps: the region as it is now is where undoing ends. */
+void region_set_forget(struct region_set *set);
 
 /* Adds the triangles that share a vertex with one of the region, or takes away those that share one
  * with a triangle outside. Each is a change of its own. -ENOMEM. */

@@ -39,6 +39,7 @@
 	FILE(editor, "/editor.js", "editor.js", SCRIPT, true)                                      \
 	FILE(eye, "/eye.js", "eye.js", SCRIPT, true)                                               \
 	FILE(history, "/history.js", "history.js", SCRIPT, true)                                   \
+	FILE(marked_part, "/marked_part.js", "marked_part.js", SCRIPT, true)                       \
 	FILE(measure, "/measure.js", "measure.js", SCRIPT, true)                                   \
 	FILE(part_list, "/part_list.js", "part_list.js", SCRIPT, true)                             \
 	FILE(pictures, "/pictures.js", "pictures.js", SCRIPT, true)                                \

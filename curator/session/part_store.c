@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/json_tree.h"
 #include "curator/store/parts_file.h"
@@ -31,6 +32,12 @@ static const char *faces_file(const cJSON *part)
 		       : NULL;
 }
 
+/* The list of faces that a part is saved to. */
+static void name_faces(const char *id, char name[DOCUMENT_NAME_BYTES])
+{
+	snprintf(name, DOCUMENT_NAME_BYTES, "regions/%s.faces", id);
+}
+
 /* ---- the list */
 
 static const char *title_of(const struct site *site, const cJSON *part)
@@ -49,13 +56,18 @@ static const char *title_of(const struct site *site, const cJSON *part)
 
 static void add_row(const struct site *site, cJSON *rows, const cJSON *part)
 {
-	const cJSON *id = cJSON_GetObjectItemCaseSensitive(part, "id");
+	const cJSON *id = cJSON_GetObjectItemCaseSensitive(part, "id"),
+		    *titles = cJSON_GetObjectItemCaseSensitive(part, "title");
 	cJSON *row = cJSON_IsString(id) ? cJSON_CreateObject() : NULL;
 
 	if (!row)
 		return;
 	cJSON_AddStringToObject(row, "id", id->valuestring);
 	cJSON_AddStringToObject(row, "title", title_of(site, part));
+	if (cJSON_IsObject(titles))
+		json_add(row, "titles", cJSON_Duplicate(titles, true));
+	else
+		cJSON_AddObjectToObject(row, "titles");
 	cJSON_AddBoolToObject(row, "faces", faces_file(part) != NULL);
 	json_append(rows, row);
 }
@@ -141,20 +153,66 @@ static int write_faces(const struct site *site, const struct region_set *set, ui
 	return rc;
 }
 
-/* Returns the part, which is new, and has a card alone, if there is none of that id. NULL: no
- * memory is left. */
-static cJSON *get_part(const struct parts_file *parts, const char *id)
+/* A file that no part names is not written over either. */
+static bool is_taken(const struct site *site, const struct parts_file *parts, const char *id)
 {
-	cJSON *part = parts_file_find(parts, id);
+	char name[DOCUMENT_NAME_BYTES], path[CONTENT_PATH_BYTES];
 
-	if (part)
-		return part;
-	part = cJSON_CreateObject();
+	name_faces(id, name);
+	return parts_file_find(parts, id) ||
+	       (content_file_path(&site->content, name, path) == 0 && access(path, F_OK) == 0);
+}
+
+/* Gets an id that is free: the wanted one, or the first with a number behind it. */
+static void find_id(const struct site *site, const struct parts_file *parts, const char *wanted,
+		    char id[REQUEST_ID_BYTES])
+{
+	char number[12];
+
+	snprintf(id, REQUEST_ID_BYTES, "%s", wanted);
+	for (unsigned n = 2; is_taken(site, parts, id); n++) {
+		const int digits = snprintf(number, sizeof(number), "-%u", n);
+
+		snprintf(id, REQUEST_ID_BYTES, "%.*s%s", REQUEST_ID_BYTES - 1 - digits, wanted,
+			 number);
+	}
+}
+
+/* Returns a new part at the end, which has a card alone, or NULL. */
+static cJSON *add_part(const struct parts_file *parts, const char *id)
+{
+	cJSON *part = cJSON_CreateObject();
+
 	if (!cJSON_AddStringToObject(part, "id", id) || !cJSON_AddFalseToObject(part, "page")) {
 		cJSON_Delete(part);
 		return NULL;
 	}
 	return json_append(parts_file_list(parts), part) ? part : NULL;
+}
+
+/* Finds the part that is saved, or makes it; *open becomes what is there of it. */
+static int get_part(const struct site *site, const struct parts_file *parts,
+		    const struct part_to_save *save, struct open_part *open, cJSON **out,
+		    struct diagnostics *diagnostics)
+{
+	if (save->is_new && !*save->title)
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "a new part needs a title: write it beside Save");
+	if (save->is_new) {
+		*open = (struct open_part){ 0 };
+		find_id(site, parts, save->id, open->id);
+		*out = add_part(parts, open->id);
+		return *out ? 0 : fail(diagnostics, -ENOMEM, PARTS_FILE);
+	}
+	if (strcmp(open->id, save->id) != 0)
+		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
+				       "what is marked is not of the part \"%s\": open it first",
+				       save->id);
+	*out = parts_file_find(parts, save->id);
+	return *out ? 0
+		    : diagnostics_add(diagnostics, -ENOENT, NULL, 0,
+				      "somebody has removed this part: save yours as a new part, "
+				      "or leave it");
 }
 
 static bool set_region(const struct site *site, cJSON *part, uint32_t scan, const char *file)
@@ -174,73 +232,108 @@ static bool set_region(const struct site *site, cJSON *part, uint32_t scan, cons
 	return json_set(part, "region", region);
 }
 
-static bool set_title(cJSON *part, const char *language, const char *title)
+static int set_title(const struct site *site, cJSON *part, const struct part_to_save *save,
+		     struct diagnostics *diagnostics)
 {
+	const char *language = *save->language ? save->language : site->content.languages[0];
 	cJSON *titles = cJSON_GetObjectItemCaseSensitive(part, "title");
+	const cJSON *now = cJSON_GetObjectItemCaseSensitive(titles, language);
+	const char *text = cJSON_IsString(now) ? now->valuestring : "";
 
+	if (!*save->title || strcmp(text, save->title) == 0)
+		return 0;
+	if (!save->replaces && strcmp(text, save->from) != 0)
+		return diagnostics_add(diagnostics, -ESTALE, NULL, 0,
+				       "somebody has changed the title meanwhile, to \"%s\"", text);
 	if (!cJSON_IsObject(titles)) {
 		titles = cJSON_CreateObject();
 		if (!json_set(part, "title", titles))
-			return false;
+			return fail(diagnostics, -ENOMEM, PARTS_FILE);
 	}
-	return json_set(titles, language, cJSON_CreateString(title));
+	return json_set(titles, language, cJSON_CreateString(save->title))
+		       ? 0
+		       : fail(diagnostics, -ENOMEM, PARTS_FILE);
 }
 
-static bool change_part(const struct site *site, const struct parts_file *parts, uint32_t scan,
-			const char *file, const struct part_to_save *save)
+/* Saves both documents; open->tag is that of the list which was there, and becomes the new one. */
+static int save_documents(struct site *site, const struct parts_file *parts, struct bytes faces,
+			  const struct part_to_save *save, struct open_part *open,
+			  struct diagnostics *diagnostics)
 {
-	const char *language = *save->language ? save->language : site->content.languages[0];
-	cJSON *part = get_part(parts, save->id);
+	char name[DOCUMENT_NAME_BYTES], what[HISTORY_WHAT_BYTES];
+	struct document_change changes[2] = {
+		{ .name = name, .text = faces, .base = save->replaces ? NULL : open->tag },
+		{ .name = PARTS_FILE },
+	};
+	struct diagnostics found = { 0 };
+	struct buffer text;
+	int rc;
 
-	return part && set_region(site, part, scan, file) &&
-	       (!*save->title || set_title(part, language, save->title));
+	buffer_init(&text, PARTS_FILE_BYTES_MAX);
+	name_faces(open->id, name);
+	snprintf(what, sizeof(what), "region of %s", open->id);
+	rc = json_print(parts->root, &text);
+	changes[1].text = buffer_bytes(&text);
+	if (rc < 0)
+		fail(&found, rc, PARTS_FILE);
+	else
+		rc = documents_save(site->documents, changes, 2, save->author, what, &found);
+	buffer_finish(&text);
+	if (rc == -ESTALE)
+		diagnostics_add(
+			diagnostics, rc, NULL, 0,
+			"somebody has marked this part anew meanwhile: replace it (it stays in the history), or save yours as a new part");
+	else if (rc < 0)
+		diagnostics_add(diagnostics, rc, NULL, 0, "%s", diagnostics_cause(&found, rc));
+	else
+		snprintf(open->tag, sizeof(open->tag), "%s", changes[0].tag);
+	return rc;
 }
 
 /* parts is changed. */
-static int save_part(const struct site *site, const struct parts_file *parts,
+static int save_part(struct site *site, const struct parts_file *parts,
 		     const struct region_set *set, const struct part_to_save *save,
-		     struct diagnostics *diagnostics)
+		     struct open_part *open, struct diagnostics *diagnostics)
 {
-	char name[DOCUMENT_NAME_BYTES], what[HISTORY_WHAT_BYTES];
-	struct document_change changes[2] = { { .name = name }, { .name = PARTS_FILE } };
-	struct buffer faces, text;
+	char name[DOCUMENT_NAME_BYTES];
+	struct buffer faces;
+	cJSON *part;
 	int rc, scan = scan_of(site, set, diagnostics);
 
 	if (scan < 0)
 		return scan;
-	if (!parts_file_find(parts, save->id) && !*save->title)
-		return diagnostics_add(diagnostics, -EINVAL, NULL, 0,
-				       "a new part needs a title: write it beside Save");
+	rc = get_part(site, parts, save, open, &part, diagnostics);
+	if (rc < 0)
+		return rc;
+	name_faces(open->id, name);
+	if (!set_region(site, part, (uint32_t)scan, name))
+		return fail(diagnostics, -ENOMEM, PARTS_FILE);
+	rc = set_title(site, part, save, diagnostics);
 	buffer_init(&faces, FACES_BYTES_MAX);
-	buffer_init(&text, PARTS_FILE_BYTES_MAX);
-	snprintf(name, sizeof(name), "regions/%s.faces", save->id);
-	snprintf(what, sizeof(what), "region of %s", save->id);
-	rc = write_faces(site, set, (uint32_t)scan, &faces, diagnostics);
-	if (rc == 0 && !change_part(site, parts, (uint32_t)scan, name, save))
-		rc = fail(diagnostics, -ENOMEM, PARTS_FILE);
-	if (rc == 0 && (rc = json_print(parts->root, &text)) < 0)
-		fail(diagnostics, rc, PARTS_FILE);
-	changes[0].text = buffer_bytes(&faces);
-	changes[1].text = buffer_bytes(&text);
 	if (rc == 0)
-		rc = documents_save(site->documents, changes, 2, save->author, what, diagnostics);
-	buffer_finish(&text);
+		rc = write_faces(site, set, (uint32_t)scan, &faces, diagnostics);
+	if (rc == 0)
+		rc = save_documents(site, parts, buffer_bytes(&faces), save, open, diagnostics);
 	buffer_finish(&faces);
 	return rc;
 }
 
 int part_store_save(struct site *site, const struct region_set *set,
-		    const struct part_to_save *save, struct diagnostics *diagnostics)
+		    const struct part_to_save *save, struct open_part *open,
+		    struct diagnostics *diagnostics)
 {
+	struct open_part saved = *open;
 	struct parts_file parts;
 	int rc;
 
 	documents_lock(site->documents);
 	rc = parts_file_read(&parts, site->documents, diagnostics);
 	if (rc == 0)
-		rc = save_part(site, &parts, set, save, diagnostics);
+		rc = save_part(site, &parts, set, save, &saved, diagnostics);
 	documents_unlock(site->documents);
 	parts_file_finish(&parts);
+	if (rc == 0)
+		*open = saved;
 	return rc;
 }
 
@@ -262,6 +355,16 @@ static int named_scan(const struct site *site, const cJSON *part, struct diagnos
 			       "the part's region names a scan that temple.ini does not");
 }
 
+/* Makes these triangles the region. */
+static int put_region(struct region_set *set, const uint32_t *triangles, uint32_t count)
+{
+	region_set_begin(set);
+	region_set_put_all(set, false);
+	for (uint32_t n = 0; n < count; n++)
+		region_set_put(set, triangles[n], true);
+	return region_set_commit(set);
+}
+
 static int put_faces(const struct site *site, struct region_set *set, const char *file,
 		     uint32_t scan, struct diagnostics *diagnostics)
 {
@@ -275,49 +378,63 @@ static int put_faces(const struct site *site, struct region_set *set, const char
 	rc = face_list_read(&faces, path, file, site->mesh->scans[scan].face_count, diagnostics);
 	if (rc == 0)
 		rc = face_list_triangles(&triangles, &count, &faces, site->mesh, scan);
-	if (rc == 0) {
-		region_set_begin(set);
-		region_set_put_all(set, false);
-		for (uint32_t n = 0; n < count; n++)
-			region_set_put(set, triangles[n], true);
-		rc = region_set_commit(set);
-	}
+	if (rc == 0)
+		rc = put_region(set, triangles, count);
 	free(triangles);
 	face_list_finish(&faces);
 	return rc;
 }
 
+/* Notes which list of faces a save would replace. */
+static int note_open(const struct site *site, const char *id, struct open_part *open,
+		     struct diagnostics *diagnostics)
+{
+	char name[DOCUMENT_NAME_BYTES];
+	struct buffer text;
+	int rc;
+
+	name_faces(id, name);
+	snprintf(open->id, sizeof(open->id), "%s", id);
+	buffer_init(&text, FACES_BYTES_MAX);
+	rc = documents_read(site->documents, name, &text, open->tag, diagnostics);
+	buffer_finish(&text);
+	return rc == -ENOENT ? 0 : rc;
+}
+
 static int open_part(const struct site *site, const struct parts_file *parts,
-		     struct region_set *set, const char *id, struct diagnostics *diagnostics)
+		     struct region_set *set, const char *id, struct open_part *open,
+		     struct diagnostics *diagnostics)
 {
 	const cJSON *part = parts_file_find(parts, id);
 	const char *file = faces_file(part);
-	int scan;
+	int rc, scan;
 
 	if (!part)
-		return diagnostics_add(diagnostics, -ENOENT, "parts.json", 0, "has no part \"%s\"",
-				       id);
+		return diagnostics_add(diagnostics, -ENOENT, NULL, 0,
+				       "there is no part \"%s\": somebody may have removed it", id);
+	rc = note_open(site, id, open, diagnostics);
+	if (rc < 0)
+		return rc;
 	if (!file)
-		return diagnostics_add(
-			diagnostics, -EINVAL, "parts.json", 0,
-			"the region of \"%s\" is a shape, not a list of faces: mark it "
-			"anew",
-			id);
+		return put_region(set, NULL, 0);
 	scan = named_scan(site, part, diagnostics);
 	return scan < 0 ? scan : put_faces(site, set, file, (uint32_t)scan, diagnostics);
 }
 
 int part_store_open(struct site *site, struct region_set *set, const char *id,
-		    struct diagnostics *diagnostics)
+		    struct open_part *open, struct diagnostics *diagnostics)
 {
+	struct open_part found;
 	struct parts_file parts;
 	int rc;
 
 	documents_lock(site->documents);
 	rc = parts_file_read(&parts, site->documents, diagnostics);
 	if (rc == 0)
-		rc = open_part(site, &parts, set, id, diagnostics);
+		rc = open_part(site, &parts, set, id, &found, diagnostics);
 	documents_unlock(site->documents);
 	parts_file_finish(&parts);
+	if (rc == 0)
+		*open = found;
 	return rc;
 }

@@ -236,6 +236,12 @@ static int read_save(const struct parse *parse, struct request *out)
 	if (rc == 0)
 		rc = read_text(parse, "title", out->title, sizeof(out->title));
 	if (rc == 0)
+		rc = read_text(parse, "from", out->from, sizeof(out->from));
+	if (rc == 0)
+		rc = read_flag(parse, "new", &out->is_new);
+	if (rc == 0)
+		rc = read_flag(parse, "replace", &out->replaces);
+	if (rc == 0)
 		rc = read_text(parse, "language", out->language, sizeof(out->language));
 	return rc;
 }
@@ -266,6 +272,11 @@ static const struct {
 	[REQUEST_SAVE] = { "save", read_save },
 	[REQUEST_OPEN] = { "open", read_open },
 };
+
+const char *request_type(enum request_kind kind)
+{
+	return kinds[kind].name;
+}
 
 static int read_kind(const struct parse *parse, struct request *out)
 {

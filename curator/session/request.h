@@ -10,8 +10,8 @@
 
 enum {
 	REQUEST_BYTES_MAX = 512 << 10,
-	REQUEST_ID_BYTES = 65, /* with its end, as all below */
-	REQUEST_TITLE_BYTES = 256,
+	REQUEST_ID_BYTES = 65,     /* with its end, as all below */
+	REQUEST_TITLE_BYTES = 801, /* 200 characters, as everywhere in the pages */
 	REQUEST_LANGUAGE_BYTES = 12,
 	REQUEST_PROBLEM_BYTES = 128,
 };
@@ -45,9 +45,15 @@ struct request {
 	float (*points_px)[2]; /* stroke, and one for pick; owned */
 	uint32_t point_count;
 	float width_px;
-	char id[REQUEST_ID_BYTES];                                         /* a-z 0-9 - _ */
-	char title[REQUEST_TITLE_BYTES], language[REQUEST_LANGUAGE_BYTES]; /* UTF-8; "": none */
+	char id[REQUEST_ID_BYTES]; /* a-z 0-9 - _ */
+	/* save, in UTF-8, "": none. from: the title that this one replaces */
+	char title[REQUEST_TITLE_BYTES], from[REQUEST_TITLE_BYTES];
+	char language[REQUEST_LANGUAGE_BYTES];
+	bool is_new, replaces; /* save: as a new part; whatever others have saved meanwhile */
 };
+
+/* Returns the type of a message of that kind. */
+const char *request_type(enum request_kind kind);
 
 /* Parses a message. Returns 0, or -EINVAL with one sentence in problem; -ENOMEM. The caller
  * finishes *out; it is zeroed on failure. */

@@ -1,7 +1,6 @@
 /* The queues between the server's thread and the session's, and what the latter does. */
 #include "curator/session/session.h"
 
-#include <cjson/cJSON.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <pthread.h>
@@ -10,9 +9,9 @@
 #include <time.h>
 
 #include "base/clock.h"
-#include "base/json_tree.h"
 #include "base/log.h"
 #include "curator/region/region_smooth.h"
+#include "curator/session/answers.h"
 #include "curator/session/painter.h"
 #include "curator/session/part_store.h"
 #include "curator/session/request.h"
@@ -26,7 +25,6 @@ enum {
 	PREPARE_AFTER_MS = 250,  /* at rest for so long, the tools get ready */
 	FRAME_SHARP = 1,
 	FRAME_SMOOTH = 2,
-	TEXT_BYTES_MAX = 4 << 20,
 };
 
 struct session {
@@ -36,6 +34,7 @@ struct session {
 	struct region_set set;
 	struct painter *painter; /* owned */
 	struct selection selection;
+	struct open_part open;
 	uint32_t sharp_view; /* the number of the sharp view's camera */
 	bool region_changed, prepared, smoothed;
 
@@ -69,93 +68,22 @@ static void send_text(struct session *session, char *text)
 	session->options.wake(session->options.user);
 }
 
-/* json is taken. */
-static void send_json(struct session *session, cJSON *json)
-{
-	send_text(session, json_line(json));
-	cJSON_Delete(json);
-}
-
-static cJSON *message_of(const char *type)
-{
-	cJSON *json = cJSON_CreateObject();
-
-	cJSON_AddStringToObject(json, "type", type);
-	return json;
-}
-
 static void send_error(struct session *session, const char *text)
 {
-	cJSON *json = message_of("error");
-
-	cJSON_AddStringToObject(json, "message", text);
-	send_json(session, json);
+	send_text(session, answer_error(NULL, NULL, text));
 }
 
-static void send_region(struct session *session)
+/* opened: the part that the region is of since this message, "" if of none; NULL: as before. */
+static void send_region(struct session *session, const char *opened)
 {
-	const struct region_set *set = &session->set;
-	cJSON *json = message_of("region");
-
-	cJSON_AddNumberToObject(json, "triangles", set->count);
-	cJSON_AddNumberToObject(json, "undo", set->done_count);
-	cJSON_AddNumberToObject(json, "redo", set->step_count - set->done_count);
-	cJSON_AddBoolToObject(json, "marks", session->selection.has_marks);
-	send_json(session, json);
+	send_text(session, answer_region(&session->set, session->selection.has_marks, opened));
 }
 
-static void add_point(cJSON *json, const char *key, const float point[3])
+static void say_hello(struct session *session)
 {
-	json_add(json, key, cJSON_CreateFloatArray(point, 3));
-}
-
-static void send_parts(struct session *session, const char *saved)
-{
-	struct diagnostics diagnostics = { 0 };
-	struct buffer parts;
-	cJSON *json, *rows;
-	int rc;
-
-	buffer_init(&parts, TEXT_BYTES_MAX);
-	rc = part_store_list(session->options.site, &parts, &diagnostics);
-	if (rc == 0)
-		rc = parts.error;
-	if (rc < 0) {
-		send_error(session, diagnostics_cause(&diagnostics, rc));
-	} else {
-		if (json_parse(&rows, buffer_bytes(&parts)) < 0)
-			rows = NULL; /* only for lack of memory, which loses the session */
-		json = message_of("parts");
-		json_add(json, "parts", rows);
-		if (saved)
-			cJSON_AddStringToObject(json, "saved", saved);
-		send_json(session, json);
-	}
-	buffer_finish(&parts);
-}
-
-static void send_hello(struct session *session)
-{
-	const struct site *site = session->options.site;
-	const struct content *content = &site->content;
-	cJSON *json = message_of("hello"), *languages;
-
-	cJSON_AddStringToObject(json, "name", content->name);
-	cJSON_AddNumberToObject(json, "triangles", site->mesh->triangle_count);
-	if (content->error_mm > 0)
-		cJSON_AddNumberToObject(json, "error", content->error_mm / 1000);
-	add_point(json, "low", site->master->box_min_m);
-	add_point(json, "high", site->master->box_max_m);
-	if (content->has_start) {
-		add_point(json, "eye", content->start_eye_m);
-		add_point(json, "target", content->start_target_m);
-	}
-	languages = cJSON_AddArrayToObject(json, "languages");
-	for (uint32_t n = 0; n < content->language_count; n++)
-		json_append(languages, cJSON_CreateString(content->languages[n]));
-	send_json(session, json);
-	send_parts(session, NULL);
-	send_region(session);
+	send_text(session, answer_hello(session->options.site));
+	send_text(session, answer_parts(session->options.site, NULL));
+	send_region(session, "");
 }
 
 /* ---- what the browser asks for */
@@ -176,7 +104,7 @@ static int work_with_tools(struct session *session, const struct request *reques
 {
 	struct selection *selection = &session->selection;
 	float point_m[3];
-	cJSON *json;
+	bool is_there;
 
 	if (!selection->image || request->view != session->sharp_view)
 		return -ESTALE;
@@ -184,10 +112,8 @@ static int work_with_tools(struct session *session, const struct request *reques
 		return selection_stroke(selection, request);
 	if (request->kind == REQUEST_APPLY)
 		return selection_apply(selection, request->take, request->through);
-	json = message_of("point");
-	if (selection_pick(selection, request->points_px[0], point_m))
-		add_point(json, "at", point_m);
-	send_json(session, json);
+	is_there = selection_pick(selection, request->points_px[0], point_m);
+	send_text(session, answer_point(is_there ? point_m : NULL));
 	return 0;
 }
 
@@ -215,66 +141,108 @@ static int change_region(struct session *session, enum request_kind kind)
 	}
 }
 
-/* Answers by itself, but where the region was opened. */
-static bool use_parts(struct session *session, const struct request *request)
+static int save_part(struct session *session, const struct request *request,
+		     struct diagnostics *diagnostics)
 {
 	const struct caller *caller = &session->options.caller;
-	const struct part_to_save save = { request->id, request->title, request->language,
-					   caller->name };
-	struct site *site = session->options.site;
-	struct diagnostics diagnostics = { 0 };
+	const struct part_to_save save = { .id = request->id,
+					   .is_new = request->is_new,
+					   .replaces = request->replaces,
+					   .title = request->title,
+					   .from = request->from,
+					   .language = request->language,
+					   .author = caller->name };
 	int rc;
 
-	if (request->kind == REQUEST_SAVE && caller->role < ROLE_EDITOR) {
-		send_error(session, "a reader cannot save: whoever administers gopura-curator can "
-				    "make you an editor");
-		return true;
-	}
-	if (request->kind == REQUEST_OPEN)
-		rc = part_store_open(site, &session->set, request->id, &diagnostics);
-	else
-		rc = part_store_save(site, &session->set, &save, &diagnostics);
-	if (rc < 0) {
-		send_error(session, diagnostics_cause(&diagnostics, rc));
-		return true;
-	}
-	if (request->kind == REQUEST_OPEN)
-		return false;
+	if (caller->role < ROLE_EDITOR)
+		return diagnostics_add(diagnostics, -EPERM, NULL, 0,
+				       "a reader cannot save: whoever administers gopura-curator "
+				       "can make you an editor");
+	rc = part_store_save(session->options.site, &session->set, &save, &session->open,
+			     diagnostics);
+	if (rc < 0)
+		return rc;
 	log_info("curator", "%s saved part %s with %" PRIu32 " triangles", caller->name,
-		 request->id, session->set.count);
-	send_parts(session, request->id);
-	return true;
+		 session->open.id, session->set.count);
+	send_text(session, answer_parts(session->options.site, session->open.id));
+	return 0;
+}
+
+/* Works on a part, or on a new one. What was marked before is not of it, so no undoing leads
+ * there. */
+static int begin_part(struct session *session, const struct request *request,
+		      struct diagnostics *diagnostics)
+{
+	int rc;
+
+	if (request->kind == REQUEST_OPEN)
+		rc = part_store_open(session->options.site, &session->set, request->id,
+				     &session->open, diagnostics);
+	else
+		rc = change_region(session, REQUEST_EMPTY);
+	if (rc < 0)
+		return rc;
+	if (request->kind == REQUEST_EMPTY)
+		session->open = (struct open_part){ 0 };
+	region_set_forget(&session->set);
+	session->region_changed = true;
+	send_region(session, session->open.id);
+	return 0;
+}
+
+static void answer_failure(struct session *session, enum request_kind kind, int rc,
+			   const struct diagnostics *diagnostics)
+{
+	const char *conflict = NULL;
+
+	if (kind == REQUEST_SAVE && rc == -ESTALE)
+		conflict = "changed";
+	else if (kind == REQUEST_SAVE && rc == -ENOENT)
+		conflict = "removed";
+	send_text(session, answer_error(request_type(kind), conflict,
+					diagnostics_total(diagnostics) > 0
+						? diagnostics_cause(diagnostics, rc)
+						: sentence(rc)));
 }
 
 /* Every message has one answer: an error, what was asked for, or the state of the region. */
 static void carry_out(struct session *session, const struct request *request)
 {
 	const uint32_t steps = session->set.done_count, triangles = session->set.count;
-	bool answered = request->kind == REQUEST_PICK;
+	struct diagnostics diagnostics = { 0 };
+	bool answered = true;
 	int rc = 0;
 
 	switch (request->kind) {
-	case REQUEST_STROKE:
-	case REQUEST_APPLY:
 	case REQUEST_PICK:
 		rc = work_with_tools(session, request);
 		break;
+	case REQUEST_SAVE:
+		rc = save_part(session, request, &diagnostics);
+		break;
+	case REQUEST_OPEN:
+	case REQUEST_EMPTY:
+		rc = begin_part(session, request, &diagnostics);
+		break;
+	case REQUEST_STROKE:
+	case REQUEST_APPLY:
+		rc = work_with_tools(session, request);
+		answered = false;
+		break;
 	case REQUEST_CLEAR:
 		selection_clear(&session->selection);
-		break;
-	case REQUEST_SAVE:
-	case REQUEST_OPEN:
-		answered = use_parts(session, request);
+		answered = false;
 		break;
 	default:
 		rc = change_region(session, request->kind);
+		answered = false;
 	}
 	if (session->set.done_count != steps || session->set.count != triangles)
 		session->region_changed = true;
 	if (rc < 0)
-		send_error(session, sentence(rc));
+		answer_failure(session, request->kind, rc, &diagnostics);
 	else if (!answered)
-		send_region(session);
+		send_region(session, NULL);
 }
 
 /* ---- pictures */
@@ -442,7 +410,7 @@ static void *work(void *user)
 	struct session *session = user;
 	struct request about;
 
-	send_hello(session);
+	say_hello(session);
 	for (;;)
 		switch (take_task(session, &about)) {
 		case TASK_END:
@@ -554,12 +522,14 @@ void session_receive(struct session *session, const char *text, size_t bytes)
 {
 	char problem[REQUEST_PROBLEM_BYTES];
 	struct request request;
+	enum request_kind kind;
 	bool taken;
 
 	if (request_parse(&request, text, bytes, problem) < 0) {
 		send_error(session, problem);
 		return;
 	}
+	kind = request.kind;
 	pthread_mutex_lock(&session->lock);
 	taken = enqueue(session, &request);
 	pthread_cond_signal(&session->changed);
@@ -567,7 +537,8 @@ void session_receive(struct session *session, const char *text, size_t bytes)
 	if (taken)
 		return;
 	request_finish(&request);
-	send_error(session, "too much at once: wait for the answers");
+	send_text(session,
+		  answer_error(request_type(kind), NULL, "too much at once: wait for the answers"));
 }
 
 bool session_next(struct session *session, struct buffer *out, bool *binary)

@@ -1,7 +1,8 @@
-// The page on which parts are marked: sends finished strokes, keeps the list of parts. docs/curator.md has the messages.
+// The page on which parts are marked: sends finished strokes. docs/curator.md has the messages.
 import { loadSession, may } from "./api.js";
 import { showAccount } from "./account.js";
 import { Eye } from "./eye.js";
+import { setUpPart, takeEnd, takeError, takeHello, takeParts, takeRegion } from "./marked_part.js";
 import { Ruler } from "./measure.js";
 import { setUpPublishing } from "./publish.js";
 
@@ -18,10 +19,11 @@ const HINTS = {
 };
 
 let ruler = new Ruler(), picks = []; // picks: what each answer that is still to come is for
-let tool = "look", take = false, through = false, openedId = "", parts = [];
+let tool = "look", take = false, through = false;
 let kept = [], stroke = null; // strokes that wait for Find part; the one being drawn
 let pen = null;               // where the keyboard's pen is, [x, y] in the picture's pixels; null: put away
-let region = { triangles: 0, undo: 0, redo: 0, marks: false };
+const NOTHING = { triangles: 0, undo: 0, redo: 0, marks: false };
+let region = NOTHING;
 
 // ---- messages
 
@@ -29,9 +31,12 @@ const eye = new Eye(stage, [picture, strokes], byId("quality"), {
   text: onText,
   moved,
   tell,
-  closed: wasOpen => {
-    byId("connection").textContent = wasOpen ? "Connection lost. What was not saved is gone; reload the page." : "No connection: is gopura-curator running?";
+  closed: (wasOpen, reason) => {
+    byId("connection").textContent = reason || (wasOpen ? "Connection lost. What was not saved is gone; reload the page." : "No connection: is gopura-curator running?");
     byId("connection").classList.add("lost");
+    region = NOTHING;
+    showRegion();
+    takeEnd();
   },
   press: (event, fingers) => {
     if (fingers > 1) {
@@ -55,20 +60,17 @@ const send = message => eye.send(message);
 function onText(message) {
   switch (message.type) {
   case "hello": begin(message); break;
-  case "region": region = message; showRegion(); break;
-  case "parts":
-    parts = message.parts;
-    if (message.saved) {
-      openedId = message.saved;
-      tell("Saved. The next build of the content takes it up. ", true);
-      byId("message").append(Object.assign(document.createElement("a"), { href: `/information#${openedId}`, textContent: "Write about it" }));
-    }
-    showParts();
+  case "region":
+    region = message;
+    showRegion();
+    takeRegion(message);
     break;
+  case "parts": takeParts(message); break;
   case "point": picked(message.at); break;
   case "error":
-    picks = [];
+    if (message.of === "pick") picks.shift();
     tell(message.message);
+    takeError(message);
     break;
   }
 }
@@ -82,7 +84,7 @@ function begin(message) {
   byId("connection").textContent = "Connected";
   byId("name").textContent = message.name;
   document.title = `${message.name} – Gopura curator`;
-  byId("language").replaceChildren(...message.languages.map(code => new Option(code, code)));
+  takeHello(message);
   ruler = new Ruler(message.error);
   eye.begin(message);
 }
@@ -263,8 +265,7 @@ function showRegion() {
   byId("count").textContent = region.triangles.toLocaleString();
   byId("undo").disabled = !region.undo;
   byId("redo").disabled = !region.redo;
-  byId("grow").disabled = byId("shrink").disabled = byId("smooth").disabled = byId("save").disabled = !region.triangles;
-  if (!may("editor")) byId("save").disabled = true;
+  byId("grow").disabled = byId("shrink").disabled = byId("smooth").disabled = !region.triangles;
   if (!region.marks && kept.length) { kept = []; drawStrokes(); }
   showMarks();
 }
@@ -275,56 +276,6 @@ byId("apply").addEventListener("click", apply);
 byId("clear").addEventListener("click", clearStrokes);
 for (const type of ["undo", "redo", "grow", "shrink", "smooth"])
   byId(type).addEventListener("click", () => { tell(""); send({ type }); });
-
-// ---- parts
-
-function showParts() {
-  const opened = parts.find(part => part.id === openedId);
-  byId("heading").textContent = opened ? `Part: ${opened.title || opened.id}` : "New part";
-  byId("parts").replaceChildren(...parts.map(part => {
-    const item = document.createElement("li"), button = document.createElement("button"), small = document.createElement("small");
-    button.type = "button";
-    button.textContent = part.title || part.id;
-    small.textContent = part.faces ? part.id : "a box or ball so far, not marked";
-    button.disabled = !part.faces;
-    button.setAttribute("aria-current", String(part.id === openedId));
-    button.append(small);
-    button.addEventListener("click", () => {
-      openedId = part.id;
-      byId("title").value = part.title;
-      tell("");
-      send({ type: "open", id: part.id });
-      showParts();
-    });
-    const write = Object.assign(document.createElement("a"), { href: `/information#${part.id}`, textContent: "Write", title: `Write about ${part.title || part.id}` });
-    item.className = "part";
-    item.append(button, write);
-    return item;
-  }));
-}
-
-// A new part's id comes from its title, if that has Latin letters.
-function idFor(title) {
-  const base = title.normalize("NFD").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 56) || "part";
-  let id = base;
-  for (let n = 2; parts.some(part => part.id === id); n++) id = `${base}-${n}`;
-  return id;
-}
-
-byId("part").addEventListener("submit", event => {
-  event.preventDefault();
-  const title = byId("title").value.trim();
-  tell("");
-  send({ type: "save", id: openedId || idFor(title), title, language: byId("language").value });
-});
-byId("fresh").addEventListener("click", () => {
-  openedId = "";
-  byId("title").value = "";
-  tell("");
-  send({ type: "empty" });
-  showParts();
-  byId("title").focus();
-});
 
 // ---- keys
 
@@ -353,6 +304,7 @@ document.addEventListener("keydown", event => {
 });
 
 chooseTool(0);
+setUpPart(send, tell);
 loadSession().then(session => {
   showAccount(session);
   setUpPublishing();

@@ -177,11 +177,16 @@ def start(port, **options):
     return browser, hello, parts
 
 
-def error_of(browser):
+def refusal(browser):
+    """Returns the next error; pictures and other texts before it are dropped."""
     while True:
         got = browser.receive()
         if got[0] == "text" and got[1]["type"] == "error":
-            return got[1]["message"]
+            return got[1]
+
+
+def error_of(browser):
+    return refusal(browser)["message"]
 
 
 def refused(port, **options):
@@ -288,16 +293,17 @@ def check_smooth(browser, eye, target):
 
 def check_parts(browser, port, folder):
     before = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
-    browser.send("save", id="the-middle", title="The middle")
+    browser.send("save", id="the-middle", title="The middle", new=True)
     assert "nothing is marked" in error_of(browser)
     browser.stroke("lasso", circle(120))
     marked = browser.text("region")["triangles"]
-    browser.send("save", id="the-middle")
+    browser.send("save", id="the-middle", new=True)
     assert "title" in error_of(browser)
-    browser.send("save", id="the-middle", title="The \"middle\" \u17a2")
+    title = "The \"middle\" \u17a2"
+    browser.send("save", id="the-middle", title=title, new=True)
     saved = browser.text("parts")
     assert saved["saved"] == "the-middle"
-    assert {"id": "the-middle", "title": "The \"middle\" \u17a2", "faces": True} in saved["parts"]
+    assert {"id": "the-middle", "title": title, "titles": {"en": title}, "faces": True} in saved["parts"]
     after = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
     assert after["parts"].pop() == {"id": "the-middle", "page": False, "region": {"kind": "faces",
                                     "file": "regions/the-middle.faces"}, "title": {"en": "The \"middle\" \u17a2"}}
@@ -306,8 +312,7 @@ def check_parts(browser, port, folder):
     assert any(part["id"] == "the-middle" for part in parts)
     assert other.ask("open", id="the-middle")["triangles"] == marked
     shape = next(part["id"] for part in parts if not part["faces"])
-    other.send("open", id=shape)
-    assert "shape" in error_of(other)
+    assert other.ask("open", id=shape)["triangles"] == 0, "a shape has faces marked"
     # Saved again under the same id: the region is replaced, the title stays.
     assert other.ask("open", id="the-middle")["triangles"] == marked
     more = other.ask("grow")["triangles"]
@@ -316,6 +321,82 @@ def check_parts(browser, port, folder):
     assert browser.ask("open", id="the-middle")["triangles"] == more
     last = json.load(open(f"{folder}/parts.json", encoding="utf-8"))
     assert last["parts"][-1]["title"] == {"en": "The \"middle\" \u17a2"} and len(last["parts"]) == len(after["parts"]) + 1
+
+
+def come(port, eye, target):
+    """A browser with a sharp picture."""
+    browser = start(port)[0]
+    browser.look(eye, target)
+    browser.picture()
+    return browser
+
+
+def mark_new(browser, radius):
+    """Begins a new part and marks the middle. Returns the number of triangles."""
+    assert browser.ask("empty")["opened"] == ""
+    browser.stroke("lasso", circle(radius))
+    return browser.text("region")["triangles"]
+
+
+def saved(browser, **values):
+    browser.send("save", **values)
+    return browser.text("parts")["saved"]
+
+
+def check_conflicts(port, folder, eye, target):
+    """Of two who mark, neither overwrites the other's without knowing it."""
+    a, b = come(port, eye, target), come(port, eye, target)
+    # Two new parts that want one id, as those do whose titles have no Latin letters.
+    sizes = mark_new(a, 60), mark_new(b, 90)
+    ids = saved(a, id="part", title="\u1791", new=True), saved(b, id="part", title="\u1794", new=True)
+    assert ids == ("part", "part-2"), ids
+    assert tuple(b.ask("open", id=part)["triangles"] for part in ids) == sizes
+    # The same part, which both have opened.
+    for browser in (a, b):
+        assert browser.ask("open", id="part")["opened"] == "part"
+    a.ask("grow")
+    theirs = b.ask("grow"), b.ask("grow")
+    assert saved(b, id="part") == "part"
+    a.send("save", id="part")
+    error = refusal(a)
+    assert (error["of"], error["conflict"]) == ("save", "changed"), error
+    assert saved(a, id="part", title="Mine", new=True) == "part-3"  # nothing that a marked is lost
+    assert a.ask("open", id="part")["triangles"] == theirs[1]["triangles"]
+    b.ask("shrink")
+    assert saved(b, id="part") == "part"
+    mine = a.ask("grow")["triangles"]
+    a.send("save", id="part")
+    assert refusal(a)["conflict"] == "changed"
+    assert saved(a, id="part", replace=True) == "part"
+    assert b.ask("open", id="part")["triangles"] == mine
+    # A title that somebody has written meanwhile.
+    assert saved(b, id="part", title="Gate", **{"from": "\u1791"}) == "part"
+    a.ask("open", id="part")
+    a.send("save", id="part", title="Door", **{"from": "\u1791"})
+    error = refusal(a)
+    assert error["conflict"] == "changed" and "Gate" in error["message"], error
+    # A part that somebody removes meanwhile.
+    cookie, token = sign_in(port)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+    connection.request("DELETE", "/api/parts/part", headers={"Cookie": cookie, "X-Gopura-Token": token})
+    assert connection.getresponse().status == 200
+    a.send("save", id="part", title="Door", **{"from": "Gate"})
+    error = refusal(a)
+    assert error["conflict"] == "removed" and "new part" in error["message"], error
+    parts = json.load(open(f"{folder}/parts.json", encoding="utf-8"))["parts"]
+    assert all(part["id"] != "part" for part in parts) and not os.path.exists(f"{folder}/regions/part.faces")
+    b.send("open", id="part")
+    error = refusal(b)
+    assert error["of"] == "open" and "removed" in error["message"], error
+    # A region is of the part that was opened last; what cannot be opened changes nothing of that.
+    for browser in (a, b):
+        browser.ask("open", id="part-2")
+    a.send("open", id="no-such-part")
+    error_of(a)
+    a.send("save", id="part-3")
+    assert "part-3" in error_of(a)
+    assert a.ask("undo")["triangles"] == sizes[1], "undoing leads to what another part has"
+    assert saved(a, id="part-2") == "part-2"
 
 
 def check_two(port, eye, target):
@@ -349,7 +430,7 @@ def check_reader(port, eye, target):
     reader.picture()
     reader.stroke("lasso", circle(120))
     assert reader.text("region")["triangles"] > 0
-    reader.send("save", id="of-a-reader", title="No")
+    reader.send("save", id="of-a-reader", title="No", new=True)
     assert "reader" in error_of(reader)
 
 
@@ -386,6 +467,7 @@ def check(port, folder):
     check_smooth(browser, eye, target)
     check_tools(browser)
     check_parts(browser, port, folder)
+    check_conflicts(port, folder, eye, target)
     check_two(port, eye, target)
     check_reader(port, eye, target)
     check_end(port)

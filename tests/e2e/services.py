@@ -58,7 +58,7 @@ def main():
     assert browser.picture()[:2] == b"\xff\xd8"
     browser.stroke("lasso", circle(100))
     assert browser.text("region")["triangles"] > 0
-    browser.send("save", id="mark", title="Mark", language="en")
+    browser.send("save", id="mark", title="Mark", language="en", new=True)
     assert browser.text("parts")["saved"] == "mark"
 
     # What comes from outside is decoded in a sandbox of its own.

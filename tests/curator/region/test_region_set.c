@@ -139,6 +139,22 @@ static void drops_undone_steps_at_a_new_change(void **state)
 	region_set_finish(&set);
 }
 
+static void undoes_and_redoes_nothing_past_what_it_forgot(void **state)
+{
+	struct region_set set;
+
+	(void)state;
+	start(&set);
+	change(&set, 10, 20, true);
+	change(&set, 30, 40, true);
+	CHECK(region_set_undo(&set));
+	region_set_forget(&set);
+	CHECK(!region_set_undo(&set) && !region_set_redo(&set) && is_range(&set, 10, 20));
+	change(&set, 21, 30, true);
+	CHECK(region_set_undo(&set) && is_range(&set, 10, 20) && !region_set_undo(&set));
+	region_set_finish(&set);
+}
+
 static void undoes_thousands_of_changes(void **state)
 {
 	struct region_set set;
@@ -262,6 +278,7 @@ int main(void)
 		cmocka_unit_test(keeps_a_change_as_the_ranges_that_it_flipped),
 		cmocka_unit_test(takes_a_change_of_nothing_for_no_step),
 		cmocka_unit_test(drops_undone_steps_at_a_new_change),
+		cmocka_unit_test(undoes_and_redoes_nothing_past_what_it_forgot),
 		cmocka_unit_test(undoes_thousands_of_changes),
 		cmocka_unit_test(puts_all_and_none),
 		cmocka_unit_test(grows_and_shrinks_by_one_ring),
