@@ -41,6 +41,8 @@ int picture_socket_open(struct picture_socket *socket, const struct session_opti
 int picture_socket_receive(struct picture_socket *socket, struct lws *wsi, const void *piece,
 			   size_t bytes)
 {
+	if (!socket->session) /* refused; the connection is about to close */
+		return 0;
 	if (lws_frame_is_binary(wsi))
 		return -1;
 	buffer_put(&socket->input, piece, bytes);
@@ -60,6 +62,8 @@ int picture_socket_write(struct picture_socket *socket, struct lws *wsi)
 	bool binary;
 	size_t size;
 
+	if (!socket->session)
+		return 0;
 	if (session_is_lost(socket->session) || !is_still_in(socket, GATE_LOOK))
 		return -1;
 	buffer_clear(&socket->output);

@@ -94,6 +94,17 @@ static int admit_socket(struct lws *wsi, struct client *client)
 	return rc;
 }
 
+/* A page shows the reason, as the server cannot answer it otherwise. */
+static int refuse_socket(struct lws *wsi, const char *reason)
+{
+	char text[124]; /* of a close frame */
+
+	snprintf(text, sizeof(text), "%s", reason);
+	lws_close_reason(wsi, LWS_CLOSE_STATUS_POLICY_VIOLATION, (unsigned char *)text,
+			 strlen(text));
+	return -1;
+}
+
 static int open_socket(struct lws *wsi, struct client *client)
 {
 	struct web_server *server = server_of(wsi);
@@ -102,10 +113,11 @@ static int open_socket(struct lws *wsi, struct client *client)
 
 	if (server->session_count == WEB_SERVER_SESSIONS_MAX) {
 		log_warn("curator", "refused a browser: %d are connected", WEB_SERVER_SESSIONS_MAX);
-		return -1;
+		return refuse_socket(wsi, "As many browsers as the program takes show the model: "
+					  "close one of them.");
 	}
 	if (picture_socket_open(&client->socket, &options) < 0)
-		return -1;
+		return refuse_socket(wsi, "The program has no memory for another browser.");
 	server->session_count++;
 	log_info("curator", "a browser of %s has connected; %u are", client->socket.caller.name,
 		 server->session_count);

@@ -32,7 +32,7 @@ const eye = new Eye(stage, [picture, strokes], byId("quality"), {
   moved,
   tell,
   closed: (wasOpen, reason) => {
-    byId("connection").textContent = reason || (wasOpen ? "Connection lost. What was not saved is gone; reload the page." : "No connection: is gopura-curator running?");
+    byId("connection").textContent = reason ? `${reason} Load the page again.` : wasOpen ? "Connection lost. What was not saved is gone; reload the page." : "No connection: is gopura-curator running?";
     byId("connection").classList.add("lost");
     region = NOTHING;
     showRegion();

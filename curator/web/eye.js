@@ -5,11 +5,14 @@ const FOV_DEG = 40, PIXELS_MAX = 1.4e6, SIDE_MAX = 2048, REST_MS = 150;
 
 export class Eye {
   // canvases: the first gets the pictures, all get their size. on: text(message), moved(), tell(sentence),
-  // closed(wasOpen); perhaps unsaved(), press(event, fingers), drag(event, button), which returns true if it does not turn,
-  // and lift(event).
+  // closed(wasOpen, reason), where the reason is "" unless the program gave one; perhaps unsaved(), press(event, fingers),
+  // drag(event, button), which returns true if it does not turn, and lift(event).
   constructor(stage, canvases, quality, on) {
     Object.assign(this, { stage, canvases, quality, on, view: 0, sharpView: -1, camera: null, decoding: Promise.resolve(), pointers: new Map() });
     this.listen();
+    // A browser keeps a page that was left for the way back, and its socket with it, which is one of a few.
+    addEventListener("pagehide", () => this.socket?.close());
+    addEventListener("pageshow", event => { if (event.persisted && !this.on.unsaved?.()) location.reload(); });
   }
 
   send(message) {
@@ -20,8 +23,8 @@ export class Eye {
     this.socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket?token=${token()}`);
     this.socket.binaryType = "arraybuffer";
     this.socket.onmessage = event => typeof event.data === "string" ? this.on.text(JSON.parse(event.data)) : this.show(event.data);
-    this.socket.onclose = () => {
-      this.on.closed(Boolean(this.camera));
+    this.socket.onclose = event => {
+      this.on.closed(Boolean(this.camera), event.reason);
       // What is not saved yet stays with the role that it was begun with: the server judges when it is saved.
       ask("GET", "/api/session").then(({ role }) => { if (role === "nobody" && !this.on.unsaved?.()) location.assign("/sign-in"); }).catch(() => {});
     };

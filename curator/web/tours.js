@@ -50,8 +50,8 @@ const eye = new Eye(byId("stage"), [byId("picture")], byId("quality"), {
   tell,
   press: () => player.pause(),
   unsaved: () => dirty,
-  closed: wasOpen => {
-    gone = wasOpen ? "The connection to the model is lost." : "There is no connection to the model.";
+  closed: (wasOpen, reason) => {
+    gone = reason || (wasOpen ? "The connection to the model is lost." : "There is no connection to the model.");
     showState(dirty ? "Not saved yet" : "");
   },
 });

@@ -104,7 +104,7 @@ class Browser:
                 size = struct.unpack("!Q", self.take(8))[0]
             payload, opcode = self.take(size), first & 15
             if opcode == 8:
-                raise ConnectionError("closed")
+                raise ConnectionError(payload[2:].decode() or "closed")
             if opcode == 9:
                 self.send_raw(payload, 10)
                 continue
@@ -399,6 +399,25 @@ def check_conflicts(port, folder, eye, target):
     assert saved(a, id="part-2") == "part-2"
 
 
+def check_ninth(port):
+    """Whoever finds no room is told so, and comes in when there is some."""
+    browsers = []
+    try:
+        for _ in range(9):
+            browsers.append(start(port)[0])
+        assert False, "nine browsers show the model"
+    except ConnectionError as error:
+        assert "close one" in str(error), error
+    for browser in browsers:
+        browser.socket.close()
+    while True:
+        try:
+            start(port)[0].socket.close()
+            return
+        except ConnectionError:
+            time.sleep(0.1)
+
+
 def check_two(port, eye, target):
     """Neither of two browsers that move at once waits for the other to stop."""
     browsers = [start(port)[0] for _ in range(2)]
@@ -480,6 +499,7 @@ def check(port, folder):
     except (ConnectionError, BrokenPipeError):
         pass
     assert browser.ask("empty")["triangles"] == 0
+    check_ninth(port)
     print("all is as promised")
 
 

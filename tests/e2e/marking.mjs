@@ -1,13 +1,13 @@
 // Curators who mark parts at the same time, in real browsers.
 //
-//     node tests/e2e/marking.mjs PORT FOLDER
+//     node tests/e2e/marking.mjs PORT PROCESS_OF_THE_PROGRAM FOLDER
 //
 // FOLDER gets pictures, and has the content.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
 import { openBrowser } from "../tools/browser.mjs";
 
-const [port, folder] = process.argv.slice(2), home = `http://127.0.0.1:${port}`;
+const [port, program, folder] = process.argv.slice(2), home = `http://127.0.0.1:${port}`;
 const CONTROL = 2;
 
 // ---- one curator
@@ -235,6 +235,27 @@ async function questions(petra) {
   await petra.click(".places a[href='/information']");
   await petra.until(`location.pathname === "/information"`, "the other page");
   assert.deepEqual(asks(), []);
+  // The way back leads to a page that works.
+  await petra.evaluate(`history.back()`);
+  await petra.until(`location.pathname === "/" && document.querySelector("#connection").textContent === "Connected" && document.querySelector("#quality").hidden`, "the page again");
+}
+
+// The program takes eight; then it ends.
+async function noRoom(ana, petra) {
+  await mark(petra, 0.3);
+  await ana.go(`${home}/information`);
+  for (let n = 0; !/ 1 are\n$/.test(readFileSync(`${folder}/curator.log`, "utf8")); n++) {
+    assert.ok(n < 600, "petra's browser is not the only one that shows the model");
+    await ana.sleep(100);
+  }
+  await petra.evaluate(`fetch("/api/session").then(answer => answer.json()).then(session => Promise.all(Array.from({ length: 7 }, () => new Promise(done => { const socket = new WebSocket("ws://" + location.host + "/socket?token=" + session.token); socket.onmessage = done; (window.sockets ||= []).push(socket); }))))`);
+  await ana.go(home);
+  await ana.until(`/close one/.test(document.querySelector("#connection").textContent)`, "why there is no picture");
+  assert.ok(await ana.evaluate(`document.querySelector("#save").disabled`));
+  process.kill(Number(program));
+  await petra.until(`/Connection lost/.test(document.querySelector("#connection").textContent)`, "the end");
+  assert.deepEqual(await petra.evaluate(`["save", "fresh", "undo", "grow"].map(id => document.querySelector("#" + id).disabled)`), [true, true, true, true]);
+  await petra.picture(`${folder}/lost.png`);
 }
 
 const ana = await openBrowser(), petra = await openBrowser({ width: 1024, height: 768, dark: true });
@@ -248,6 +269,7 @@ try {
   assert.ok(!existsSync(`${folder}/content/regions/part.faces`));
   // The browser remarks on the answer 409 to what would change, as there is no release.
   assert.deepEqual([...ana.complaints, ...petra.complaints].filter(complaint => !/status of 409/.test(complaint)), []);
+  await noRoom(ana, petra);
 } catch (failure) {
   for (const [name, browser] of [["ana", ana], ["petra", petra]]) {
     await browser.picture(`${folder}/failed-${name}.png`);

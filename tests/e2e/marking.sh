@@ -19,4 +19,4 @@ curator=$!
 trap 'kill $curator 2>/dev/null || true' EXIT
 wait_for 60 "address" grep -q 'open http://127.0.0.1:' "$work/curator.log"
 port=$(sed -nE 's|.*http://127.0.0.1:([0-9]+)/.*|\1|p' "$work/curator.log")
-timeout 240 node tests/e2e/marking.mjs "$port" "$work" || { tail "$work/curator.log"; fail "in the browser"; }
+timeout 240 node tests/e2e/marking.mjs "$port" "$curator" "$work" || { tail "$work/curator.log"; fail "in the browser"; }
