@@ -194,11 +194,16 @@ static void give_back_memory(struct frame *frame)
 
 int frame_unseen(struct frame *frame)
 {
+	const struct frame_options *o = &frame->options;
+
 	if (context_is_lost())
 		return -ENOTRECOVERABLE;
-	frame->options.redraw->wanted = false;
-	sessions_warm(frame->options.sessions);
-	sessions_ask(frame->options.sessions);
+	o->redraw->wanted = false;
+	/* The next release is drawn with this camera, which no frame may have set yet. */
+	if (o->eye->ready)
+		eye_aim(o->eye, o->viewport, clock_now_ms());
+	sessions_warm(o->sessions);
+	sessions_ask(o->sessions);
 	return 0;
 }
 
