@@ -25,7 +25,7 @@ static bool is_judged(const struct trial *trial, const struct trial_sight *sight
 
 static bool is_blank(const struct trial_sight *sight)
 {
-	return !sight->is_pictured && sight->is_complete;
+	return !sight->is_pictured && sight->is_complete && !sight->is_dark;
 }
 
 static bool may_fail(const struct trial_sight *sight)
@@ -37,6 +37,9 @@ enum trial_verdict trial_judge(struct trial *trial, const struct trial_sight *si
 {
 	if (!is_judged(trial, sight))
 		return TRIAL_GOES_ON;
+	if (sight->is_dark || trial->was_dark)
+		trial->shown_ms = now_ms; /* nothing could be seen until now */
+	trial->was_dark = sight->is_dark;
 	if (sight->is_pictured && trial->pictured_ms == 0 && sight->frame_ms >= trial->shown_ms &&
 	    !sight->is_dark)
 		trial->pictured_ms = sight->frame_ms;

@@ -8,8 +8,10 @@
 #include <stdint.h>
 
 struct trial {
-	int64_t shown_ms;    /* when the release was put on the panel; 0: none was */
+	/* Since when the release is on the panel, without the time that it was dark; 0: none is. */
+	int64_t shown_ms;
 	int64_t pictured_ms; /* when it was first visible; 0: not yet */
+	bool was_dark;       /* the panel, when the trial was judged last */
 };
 
 /* What the kiosk sees of the release that is shown. */

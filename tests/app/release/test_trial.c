@@ -93,6 +93,20 @@ static void returns_from_what_shows_nothing(void **state)
 	CHECK(failed == 1);
 }
 
+/* A kiosk that starts at night loads a little of the release and draws nothing of it. */
+static void blames_no_release_for_the_night(void **state)
+{
+	(void)state;
+	sight.is_dark = true;
+	after(3600000);
+	CHECK(failed == 0 && wait() == -1);
+	sight.is_dark = false;
+	after(0);
+	CHECK(failed == 0 && wait() == 60000);
+	after(60000);
+	CHECK(failed == 1);
+}
+
 static void blames_no_release_for_the_network(void **state)
 {
 	(void)state;
@@ -140,6 +154,7 @@ int main(void)
 		ON_TRIAL(proves_nothing_by_the_frame_before_it),
 		ON_TRIAL(returns_from_what_cannot_be_decoded),
 		ON_TRIAL(returns_from_what_shows_nothing),
+		ON_TRIAL(blames_no_release_for_the_night),
 		ON_TRIAL(blames_no_release_for_the_network),
 		ON_TRIAL(has_nowhere_to_return_at_first),
 		ON_TRIAL(decides_nothing_while_the_next_one_loads),
