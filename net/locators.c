@@ -170,6 +170,7 @@ static void read_from_cache(struct located_release *release)
 int locators_add(struct locators *locators, struct hash root)
 {
 	struct located_release **releases = locators->releases, *release;
+	size_t room = MESSAGE_RELEASES_MAX - 1; /* the place that is taken */
 
 	for (size_t i = 0; i < MESSAGE_RELEASES_MAX; i++)
 		if (releases[i] && hash_equal(releases[i]->root, root))
@@ -179,8 +180,11 @@ int locators_add(struct locators *locators, struct hash root)
 		return -ENOMEM;
 	release->root = root;
 	release->locators = locators;
-	release_destroy(releases[MESSAGE_RELEASES_MAX - 1]);
-	for (size_t i = MESSAGE_RELEASES_MAX - 1; i > 0; i--)
+	if (releases[room]) { /* the first one, which is on the panel, stays */
+		room--;
+		release_destroy(releases[room]);
+	}
+	for (size_t i = room; i > 0; i--)
 		releases[i] = releases[i - 1];
 	releases[0] = release;
 	report_change(locators);

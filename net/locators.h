@@ -33,8 +33,8 @@ void locators_init(struct locators *locators, const struct locators_options *opt
 /* Removes all releases and cancels their requests. */
 void locators_clear(struct locators *locators);
 
-/* Adds a release as the newest, unless it is in use already. The oldest one goes if there are
- * MESSAGE_RELEASES_MAX. -ENOMEM: its objects are not found. */
+/* Adds a release as the newest, unless it is in use already. If there are MESSAGE_RELEASES_MAX, the
+ * oldest goes except for the first, which is shown. -ENOMEM: its objects are not found. */
 must_check int locators_add(struct locators *locators, struct hash root);
 /* Writes the roots of the releases in use, newest first. Returns their number. */
 size_t locators_roots(const struct locators *locators, struct hash roots[MESSAGE_RELEASES_MAX]);
