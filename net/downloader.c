@@ -36,6 +36,10 @@ enum {
 	/* of the waiting time, what the most urgent object may wait for others of its range */
 	AHEAD_SHARE = 10,
 	WAIT_MS = 500,
+	/* Until a want that the line broke with is tried after a pause of the link. Others are
+	 * tried first: the server may never have this object, and only one request at a time is
+	 * made. */
+	BEHIND_MS = 100,
 	FIRST_BYTES_PER_S = 1 << 20, /* assumed before the line was measured */
 	CACHE_READS_MAX = 64,        /* per call: other sources share the loop */
 	ITEMS_MAX = 1 << 20,         /* of one plan */
@@ -226,17 +230,23 @@ static void on_range_object(void *data, struct want *want, uint32_t segment, str
 static void on_failed(void *data, struct want *want, int rc)
 {
 	struct downloader *downloader = data;
+	const int64_t now_ms = clock_now_ms();
+	const int64_t behind_ms = downloader->options.link->retry_at_ms + BEHIND_MS;
 
-	want->retry_at_ms = 0; /* the pause of the link is enough */
 	downloader->plan_changed = true;
-	if (rc == -EHOSTUNREACH)
-		return;
+	if (rc == -EHOSTUNREACH && want->retry_at_ms > now_ms)
+		return;      /* the segments of an object break together */
 	if (rc == -ENOMEM) { /* ours, not the server's */
-		want->retry_at_ms = clock_now_ms() + NO_MEMORY_MS;
+		want->retry_at_ms = now_ms + NO_MEMORY_MS;
 		return;
 	}
 	want->failures++;
-	want->retry_at_ms = clock_now_ms() + link_pause_ms(want->failures);
+	want->retry_at_ms = now_ms + link_pause_ms(want->failures);
+	if (rc == -EHOSTUNREACH) {
+		if (want->retry_at_ms < behind_ms)
+			want->retry_at_ms = behind_ms;
+		return;
+	}
 	report(downloader, want, rc == -EBADMSG ? MISSING_DAMAGED : MISSING_NOT_FOUND);
 	locators_suspect(&downloader->locators);
 }

@@ -360,9 +360,10 @@ static void work(struct fetch *fetch)
 	if (fetch->has_kiosk) {
 		if (stick_work(fetch->stick, kiosk_has_room(fetch)))
 			downloader_look_up_again(fetch->downloader);
-		downloader_work(fetch->downloader);
+		/* Before the objects: while the link has failed, one request at a time is made. */
 		poll_work(fetch->poll);
 		asked_file_work(fetch->asked);
+		downloader_work(fetch->downloader);
 		send_status(fetch);
 	}
 	/* The kiosk waits for what was lost. It connects again and repeats what it wants. */

@@ -20,7 +20,7 @@ struct want {
 	struct message_want asked;
 	enum want_state state;
 	uint64_t order;          /* order of arrival; a lower one came earlier */
-	uint32_t failures;       /* answers in a row without the object, or with wrong bytes */
+	uint32_t failures;       /* requests in a row without the object, or with wrong bytes */
 	uint32_t damages;        /* how many of these had wrong bytes */
 	int64_t retry_at_ms;     /* in state WANT_WAITING (clock_now_ms) */
 	uint32_t stick_failures; /* how often the stick could not be read for it */

@@ -1,8 +1,8 @@
 #!/bin/bash
 # The fetcher against a hostile server, or somebody who answers in its place: a captive portal, endless bodies and
-# headers, a byte per second, redirections, wrong ranges, broken connections. The fetcher accepts no wrong object,
-# contacts no other server, stays small, keeps sending its status, and loads everything once the server is good again.
-# Then a new root after a portal, through the fetcher alone.
+# headers, a byte per second, redirections, wrong ranges, broken connections, a place that cannot be read. The fetcher
+# accepts no wrong object, contacts no other server, stays small, keeps sending its status, and loads everything once
+# the server is good again. Then a new root after a portal, through the fetcher alone.
 set -eu
 cd "$(dirname "$0")/../.."
 tool=build/tests/tools/fetch_tool fetch=build/gopura-fetch
@@ -55,6 +55,18 @@ try() {
 for how in portal elsewhere home round silent slow endless headers shifted overlapping longer reset bomb rubbish; do
 	try "$how"
 done
+
+# ---- a place that the server cannot read: all but the one object come, and the fetcher looks for a release meanwhile
+be broken
+"$fetch" --release "http://127.0.0.1:$port" --cache "$folder/broken.db" --socket "$folder/broken.socket" --poll-s 1 \
+	2>"$folder/fetch.log" &
+pids+=($!)
+for _ in $(seq 100); do [ ! -S "$folder/broken.socket" ] || break; sleep 0.1; done
+line=$(walk broken 15) && fail "broken: all came: $line"
+[ "$(figure came "$line")" = $((objects - 1)) ] || fail "broken: $line"
+[ "$(wc -l <"$folder/mode.looks")" -ge 4 ] || fail "broken: the fetcher does not look for a release"
+be good
+line=$(walk broken 90) || fail "broken: the object did not come once the server was good: $line"
 
 # ---- a portal for many rounds, then the next roots
 mkdir -p "$folder/release/root"

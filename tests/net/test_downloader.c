@@ -583,6 +583,30 @@ static void waits_while_the_server_is_away(void **state)
 	CHECK(server.count == before + 3); /* and all the others follow */
 }
 
+/* What the server cannot read is asked for again and again, and everything else comes meanwhile. */
+static void loads_the_rest_where_one_object_always_breaks_the_line(void **state)
+{
+	struct stage *stage = *state;
+
+	begin(stage);
+	stage->link.failures = 6; /* its pause is long by now */
+	for (int n = 0; n < 12; n += 3)
+		want(stage, n, n == 0 ? 3000 : 1000);
+	for (int n = 0; n < 8 && stage->objects < 3; n++) {
+		downloader_work(stage->downloader);
+		for (size_t i = 0; i < server.count; i++)
+			if (server.asked[i].open && server.asked[i].get.first == 0)
+				end(&server.asked[i], -EHOSTUNREACH);
+			else if (server.asked[i].open)
+				answer(stage, &server.asked[i]);
+		server.now_ms = downloader_due_ms(stage->downloader);
+	}
+	CHECK(stage->objects == 3 && downloader_wanted(stage->downloader) == 1);
+	downloader_work(stage->downloader);
+	answer(stage, asked(0));
+	CHECK(stage->objects == 4);
+}
+
 /* A stick that was pushed, or a moment without memory, must not cost a terminal without a server
  * its pictures. */
 static void asks_the_stick_again_when_it_could_not_be_read(void **state)
@@ -749,6 +773,7 @@ int main(void)
 		STAGED(asks_for_the_locator_after_damage_but_not_amid_it),
 		STAGED(asks_again_for_the_rest_of_a_pack_cut_short),
 		STAGED(waits_while_the_server_is_away),
+		STAGED(loads_the_rest_where_one_object_always_breaks_the_line),
 		STAGED(asks_the_stick_again_when_it_could_not_be_read),
 		STAGED(tells_what_the_release_does_not_have),
 		STAGED(does_without_a_damaged_locator_until_it_is_repaired),

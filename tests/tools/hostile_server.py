@@ -19,9 +19,10 @@ serves FOLDER over HTTP as the first word of MODE_FILE says, looked up for each 
     reset                 a connection that is broken in the midst of a body
     bomb                  a body of a thousand times its size, said to be packed
     rubbish               what is no HTTP
+    broken                the files, but an error of its own for the middle of a pack
 
-PORT_FILE gets "PORT NEIGHBOUR", and MODE_FILE.visits a line for each visit to the neighbour. Ends
-with its standard input."""
+PORT_FILE gets "PORT NEIGHBOUR", MODE_FILE.visits a line for each visit to the neighbour, and
+MODE_FILE.looks one for each look for a timestamp while it is broken. Ends with its standard input."""
 import gzip
 import os
 import random
@@ -64,6 +65,9 @@ def asked_range(fields, size):
 
 
 def serve_file(connection, path, fields, how):
+    if how == "broken" and path.endswith("/timestamp.json"):
+        with open(mode_file + ".looks", "a") as file:
+            file.write("a look\n")
     name = os.path.join(folder, path.lstrip("/"))
     if not os.path.isfile(name):
         answer(connection, "404 Not Found", b"none")
@@ -76,7 +80,9 @@ def serve_file(connection, path, fields, how):
     first, last = asked_range(fields, len(body))
     content_range = f"Content-Range: bytes {first}-{last}/{len(body)}"
     part = body[first : last + 1]
-    if how == "shifted":
+    if how == "broken" and first <= len(body) // 2 <= last:
+        answer(connection, "500 Internal Server Error", b"the disk has a bad sector")
+    elif how == "shifted":
         first += 1
         answer(connection, "206 Partial", part, f"Content-Range: bytes {first}-{last + 1}/{len(body)}")
     elif how == "overlapping":
