@@ -16,7 +16,7 @@ enum {
 	/* Longest wait for a complete picture; then what there is of it is shown. */
 	WARM_MOST_MS = 60000,
 	WARM_WIDTH_PX = 320,
-	FORGETFUL_MS = 30000,  /* wait before a failed write is tried again */
+	FORGETFUL_MS = 30000,  /* wait before a failed write or sync is tried again */
 	HELD_MS = 60000,       /* interval of checking the time of day */
 	WHOLE_MOST_MS = 20000, /* longest wait before the first picture is synced */
 	AGAIN_MS = 1000,       /* wait before a release is opened again that could not be */
@@ -248,6 +248,7 @@ static void take_over(struct sessions *sessions)
 	sessions->shown = sessions->coming;
 	sessions->shown.synced = true;
 	sessions->coming = (struct session){ 0 };
+	sessions->store_again_ms = 0;
 	announce(sessions, &before.exhibit);
 	for (uint32_t i = 0; i < sessions->shown.kept_count; i++)
 		net_client_keep(sessions->options.net, sessions->shown.kept[i]);
@@ -292,8 +293,16 @@ static void wait_for_disk(struct sessions *sessions)
 	sessions->coming_waits = true;
 }
 
+/* For the release that is on the panel already. */
+static void store_later(struct sessions *sessions)
+{
+	sessions->store_again_ms = clock_now_ms() + FORGETFUL_MS;
+}
+
 void sessions_remembered(struct sessions *sessions, struct hash root, int rc)
 {
+	if (rc < 0 && hash_equal(sessions->shown.exhibit.root, root))
+		store_later(sessions);
 	if (!sessions->coming.exhibit.scene || !hash_equal(sessions->coming.exhibit.root, root))
 		return;
 	if (rc == 0) {
@@ -313,7 +322,8 @@ void sessions_keep_first(struct sessions *sessions, int64_t pictured_ms)
 {
 	struct session *shown = &sessions->shown;
 
-	if (shown->synced || shown->exhibit.frame.patches == 0 || sessions->coming.syncing)
+	if (shown->synced || shown->exhibit.frame.patches == 0 || sessions->coming.syncing ||
+	    sessions->store_again_ms > 0)
 		return;
 	if (!shown->exhibit.frame.settled &&
 	    (pictured_ms == 0 || clock_now_ms() < pictured_ms + WHOLE_MOST_MS))
@@ -330,8 +340,11 @@ void sessions_synced(struct sessions *sessions, bool done)
 
 	if (sessions->shown.syncing) { /* answers arrive in order */
 		sessions->shown.syncing = false;
+		sessions->shown.synced = done;
 		if (done)
 			log_info("app", "the objects of the picture are stored on the disk");
+		else
+			store_later(sessions);
 		return;
 	}
 	if (!coming->exhibit.scene || !coming->syncing)
@@ -355,6 +368,9 @@ void sessions_warm(struct sessions *sessions)
 	if (sessions->shown.root_here && !sessions->options.eye->ready) {
 		take_bounds(sessions);
 		updater_remember(sessions->options.updater, sessions->shown.exhibit.root);
+	} else if (sessions->store_again_ms > 0 && now_ms >= sessions->store_again_ms) {
+		sessions->store_again_ms = 0;
+		updater_remember(sessions->options.updater, sessions->shown.exhibit.root);
 	}
 	if (exhibit_is_broken(&sessions->coming.exhibit)) {
 		updater_refuse(sessions->options.updater, sessions->coming.exhibit.root,
@@ -376,13 +392,19 @@ void sessions_warm(struct sessions *sessions)
 	}
 }
 
-int sessions_wait_ms(const struct sessions *sessions)
+static int until_ms(int64_t due_ms)
 {
-	const int64_t now_ms = clock_now_ms();
+	const int64_t left_ms = due_ms - clock_now_ms();
+
+	return left_ms > 0 ? (int)left_ms : 0;
+}
+
+static int coming_wait_ms(const struct sessions *sessions)
+{
 	int64_t due_ms = sessions->coming_since_ms + WARM_MOST_MS + 1;
 
 	if (sessions->again_ms > 0)
-		return sessions->again_ms > now_ms ? (int)(sessions->again_ms - now_ms) : 0;
+		return until_ms(sessions->again_ms);
 	if (sessions->coming_held)
 		return may_load(sessions) ? 0 : HELD_MS;
 	if (!sessions->coming.root_here)
@@ -391,7 +413,16 @@ int sessions_wait_ms(const struct sessions *sessions)
 		due_ms = sessions->coming_drawn_ms + WARM_PERIOD_MS;
 	else if (is_ready(sessions))
 		return visitor_left_ms(sessions);
-	else if (due_ms <= now_ms)
+	else if (due_ms <= clock_now_ms())
 		return -1; /* wait until something of it arrives */
-	return due_ms > now_ms ? (int)(due_ms - now_ms) : 0;
+	return until_ms(due_ms);
+}
+
+int sessions_wait_ms(const struct sessions *sessions)
+{
+	const int coming_ms = coming_wait_ms(sessions);
+
+	return sessions->store_again_ms > 0
+		       ? clock_sooner_ms(coming_ms, until_ms(sessions->store_again_ms))
+		       : coming_ms;
 }

@@ -52,6 +52,8 @@ struct sessions {
 	struct hash again_root;
 	uint32_t again_bytes;
 	int64_t again_ms;
+	/* When the release that is shown is stored again, because the disk failed; 0: it is not. */
+	int64_t store_again_ms;
 	struct gl_target warm_target; /* the target it is drawn to */
 	int epoll_fd;                 /* holds the descriptors of the scenes; 0: not created */
 };
@@ -77,12 +79,12 @@ void sessions_keep_first(struct sessions *sessions, int64_t pictured_ms);
 /* Called after each frame: tells the fetcher what is wanted. */
 void sessions_ask(struct sessions *sessions);
 /* Handles the answer to net_client_sync. done: the objects survive a power cut; otherwise the disk
- * failed. */
+ * failed, and it is tried again. */
 void sessions_synced(struct sessions *sessions, bool done);
-/* Called when the release was stored, or could not be (rc < 0). If it is the next one and was
- * stored, it is shown. */
+/* Called when the release was stored, or could not be (rc < 0): then it is tried again. If it is
+ * the next one and was stored, it is shown. */
 void sessions_remembered(struct sessions *sessions, struct hash root, int rc);
-/* Returns in how many milliseconds the next release is to be drawn again; -1: only when something
+/* Returns in how many milliseconds sessions_warm has something to do; -1: only when something
  * arrives. */
 int sessions_wait_ms(const struct sessions *sessions);
 
