@@ -175,11 +175,14 @@ static bool may_load(const struct sessions *sessions)
 void sessions_ask(struct sessions *sessions)
 {
 	struct wants *wants = sessions->options.wants;
+	const bool was_held = sessions->coming_held;
 	bool all;
 
 	wants_begin(wants);
 	all = add_wants(wants, &sessions->shown);
 	sessions->coming_held = sessions->coming.exhibit.scene && !may_load(sessions);
+	if (was_held && !sessions->coming_held)
+		sessions->coming_since_ms = clock_now_ms(); /* it begins to load only now */
 	wants_later(wants);
 	if (!sessions->coming_held)
 		all = add_wants(wants, &sessions->coming) && all;

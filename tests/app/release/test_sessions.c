@@ -420,6 +420,25 @@ static void shows_what_there_is_of_the_next_after_a_minute(void **state)
 	CHECK(museum.syncs == 2);
 }
 
+static void gives_the_next_its_minute_from_when_it_may_load(void **state)
+{
+	(void)state;
+	museum.settled = false;
+	show_first();
+	sessions.options.download = (struct daily){ .from_min = 120, .until_min = 180 };
+	begin(second);
+	CHECK(sessions.coming_held);
+	now_ms = 120 * MINUTE;
+	CHECK(sessions_wait_ms(&sessions) == 0);
+	after(0);
+	CHECK(!sessions.coming_held);
+	root_arrives(second);
+	after(MINUTE);
+	CHECK(museum.syncs == 1 && museum.drawn > 0);
+	after(S);
+	CHECK(museum.syncs == 2);
+}
+
 #define MUSEUM(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void)
@@ -429,6 +448,7 @@ int main(void)
 		MUSEUM(tries_again_to_store_the_next_where_the_disk_is_full),
 		MUSEUM(tries_again_to_store_what_is_shown_where_the_disk_is_full),
 		MUSEUM(shows_what_there_is_of_the_next_after_a_minute),
+		MUSEUM(gives_the_next_its_minute_from_when_it_may_load),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
