@@ -72,25 +72,33 @@ static void end_visit(struct visitor *visitor)
 	if (overlay)
 		reset_overlay(visitor, overlay);
 	visitor->down = 0;
+	visitor->circles = false;
 	env->ended(env->data);
 	counting_write(env->counting);
 }
 
-/* Starts the tour for the time while nobody is there, or flies the eye to the start of the attract
- * camera. */
-static void start_presenting(struct visitor *visitor, int64_t now_ms)
+/* Flies the eye to the start of the attract camera. */
+static void start_circling(struct visitor *visitor, int64_t now_ms)
 {
 	struct navigator *navigator = &visitor->env.eye->navigator;
 	const struct navigator_options *o = &navigator->options;
 	float eye_m[3], target_m[3];
 
-	if (tour_player_start_loop(visitor->env.tours))
-		return;
 	attract_camera_init(&visitor->attract, o->box_min_m, o->box_max_m, o->home_eye_m,
 			    o->home_target_m);
 	attract_camera_pose(&visitor->attract, 0, eye_m, target_m);
 	navigator_fly(navigator, eye_m, target_m, HOMEWARD_MS);
 	visitor->attract_since_ms = now_ms + HOMEWARD_MS;
+	visitor->circles = true;
+}
+
+/* Presents the model while nobody is there, by a tour or the attract camera. The release may have
+ * changed, and its database may arrive late. */
+static void present(struct visitor *visitor, int64_t now_ms)
+{
+	if (visitor->env.tours->tour.state == TOUR_OFF &&
+	    !tour_player_start_loop(visitor->env.tours) && !visitor->circles)
+		start_circling(visitor, now_ms);
 }
 
 /* ---- the loop */
@@ -144,12 +152,10 @@ void visitor_turn(struct visitor *visitor)
 		presence_keep(&visitor->presence, now_ms);
 	presence_step(&visitor->presence, now_ms, is_reading(visitor));
 	log_state(visitor);
-	if (nobody_is_there(visitor) && before != PRESENCE_NOBODY) {
+	if (nobody_is_there(visitor) && before != PRESENCE_NOBODY)
 		end_visit(visitor);
-		start_presenting(visitor, now_ms);
-	} else if (nobody_is_there(visitor) && tour->state == TOUR_OFF) {
-		tour_player_start_loop(visitor->env.tours); /* its database may arrive late */
-	}
+	if (nobody_is_there(visitor))
+		present(visitor, now_ms);
 	asked_s = presence_asked_s(&visitor->presence, now_ms);
 	tell_overlay(visitor, asked_s);
 	if (visitor->presence.state != before || asked_s != visitor->asked_s ||
@@ -217,8 +223,9 @@ void visitor_on_release(void *data, const struct exhibit_change *change)
 {
 	const char *language = information_view_language(change->before->view);
 	struct overlay *overlay = exhibit_overlay(change->shown);
+	struct visitor *visitor = data;
 
-	(void)data;
+	visitor->circles = false;
 	if (language)
 		information_view_set_language(change->shown->view, language);
 	if (overlay) /* NULL if the panel is too small for it */

@@ -80,6 +80,35 @@ static void the_tour_for_nobody_takes_the_circles_place(void **state)
 	CHECK(!visit.tours.tour.loops && visitor_wait_ms(&visit.visitor) >= 0);
 }
 
+static void goes_round_the_next_release_as_soon_as_it_is_shown(void **state)
+{
+	static const struct exhibit none;
+	const struct exhibit_change change = { &visit.shown, &none };
+	const float *eye_m = visit.eye.navigator.eye_m;
+
+	(void)state;
+	write_tour("round", true);
+	show_words();
+	after(60 * S);
+	CHECK(visit.tours.tour.loops);
+	write_tour("one", false);
+	show_words();
+	for (int release = 1; release <= 2; release++) {
+		visitor_on_release(&visit.visitor, &change);
+		tour_player_on_release(&visit.tours, &change);
+		for (int i = 0; i < 3; i++)
+			visit.eye.navigator.options.box_max_m[i] = (float)(100 * release);
+		after(0);
+		CHECK(!lead() && visit.eye.navigator.flight_left_ms > 0);
+		after(3 * S);
+		lead();
+		CHECK(visit.visitor.attract.axis_m[0] == (float)(50 * release));
+		CHECK(memcmp(eye_m, visit.visitor.attract.eye_m, 3 * sizeof(*eye_m)) == 0);
+	}
+	after(3 * S);
+	CHECK(visit.eye.navigator.flight_left_ms == 0); /* and has not begun anew */
+}
+
 static void a_touch_ends_the_tour_for_nobody(void **state)
 {
 	(void)state;
@@ -302,6 +331,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		VISITED(shows_the_model_round_while_nobody_is_there),
 		VISITED(the_tour_for_nobody_takes_the_circles_place),
+		VISITED(goes_round_the_next_release_as_soon_as_it_is_shown),
 		VISITED(a_touch_ends_the_tour_for_nobody),
 		VISITED(a_tour_that_runs_is_somebody_and_ends_as_nobody),
 		VISITED(who_halted_a_tour_reads),
