@@ -422,7 +422,7 @@ static int visitor_step(void *data)
 {
 	struct kiosk *kiosk = data;
 
-	visitor_turn(&kiosk->visitor);
+	visitor_turn(&kiosk->visitor, display_is_dark(kiosk->display));
 	return 0;
 }
 

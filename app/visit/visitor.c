@@ -139,7 +139,7 @@ static void tell_overlay(const struct visitor *visitor, int asked_s)
 	tour_player_show(visitor->env.tours);
 }
 
-void visitor_turn(struct visitor *visitor)
+void visitor_turn(struct visitor *visitor, bool is_dark)
 {
 	const int64_t now_ms = clock_now_ms();
 	const enum presence_state before = visitor->presence.state;
@@ -148,7 +148,7 @@ void visitor_turn(struct visitor *visitor)
 
 	if (is_off(visitor))
 		return;
-	if (!tour->loops && tour_runs(tour))
+	if (!tour->loops && tour_runs(tour) && !is_dark)
 		presence_keep(&visitor->presence, now_ms);
 	presence_step(&visitor->presence, now_ms, is_reading(visitor));
 	log_state(visitor);

@@ -49,8 +49,9 @@ struct visitor {
 void visitor_init(struct visitor *visitor, const struct visitor_options *options,
 		  const struct visitor_env *env);
 /* Called once per turn of the loop: asks whether the visitor is still there, resets everything
- * after a visit, and starts the tour or the attract camera. */
-void visitor_turn(struct visitor *visitor);
+ * after a visit, and starts the tour or the attract camera. is_dark: the panel is off or missing,
+ * so a tour on it is no sign of a visitor. */
+void visitor_turn(struct visitor *visitor, bool is_dark);
 /* Returns in how many milliseconds visitor_turn has something to do by time alone; -1: never. */
 int visitor_wait_ms(const struct visitor *visitor);
 /* Moves the eye along a tour or the attract camera, if no visitor controls it. Returns true if it

@@ -141,6 +141,20 @@ static void a_tour_that_runs_is_somebody_and_ends_as_nobody(void **state)
 	CHECK(nobody_is_there());
 }
 
+/* No frame is drawn then, so the tour would never end. */
+static void a_tour_on_a_dark_panel_is_nobody(void **state)
+{
+	(void)state;
+	write_tour("one", false);
+	show_words();
+	taps();
+	tour_player_start(&visit.tours, 0);
+	visit.is_dark = true;
+	after(60 * S);
+	after(15 * S);
+	CHECK(nobody_is_there() && visit.tours.tour.state == TOUR_OFF && visit.ended == 1);
+}
+
 static void who_halted_a_tour_reads(void **state)
 {
 	(void)state;
@@ -334,6 +348,7 @@ int main(void)
 		VISITED(goes_round_the_next_release_as_soon_as_it_is_shown),
 		VISITED(a_touch_ends_the_tour_for_nobody),
 		VISITED(a_tour_that_runs_is_somebody_and_ends_as_nobody),
+		VISITED(a_tour_on_a_dark_panel_is_nobody),
 		VISITED(who_halted_a_tour_reads),
 		VISITED(who_chooses_a_tour_reads),
 		VISITED(leaves_nothing_of_a_page_for_the_next),

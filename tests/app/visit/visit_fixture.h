@@ -47,7 +47,8 @@ static struct {
 	struct listening listening;
 	struct actions actions;
 	struct visitor visitor;
-	int ended; /* visits */
+	bool is_dark; /* the panel */
+	int ended;    /* visits */
 } visit;
 
 static inline void on_ended(void *data)
@@ -187,7 +188,7 @@ static inline int end_visit(void **state)
 static inline void after(int64_t ms)
 {
 	now_ms += ms;
-	visitor_turn(&visit.visitor);
+	visitor_turn(&visit.visitor, visit.is_dark);
 }
 
 #define VISITED(test) cmocka_unit_test_setup_teardown(test, begin_visit, end_visit)
