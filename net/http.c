@@ -23,6 +23,7 @@ enum {
 	URL_BYTES_MAX = 4096,
 	ETAG_BYTES_MAX = 128,
 	CONNECT_MS = 8000,
+	DEAD_MS = 30000, /* without an acknowledgement a connection is dead */
 	STALL_S = 15,
 	STALL_BYTES_PER_S = 64,
 	PATIENCE_S = 60,
@@ -85,9 +86,14 @@ static uint64_t received_by(int fd)
 static curl_socket_t on_open(void *data, curlsocktype purpose, struct curl_sockaddr *address)
 {
 	struct http *http = data;
+	const unsigned dead_ms = DEAD_MS;
 	int fd = socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
 
 	(void)purpose;
+	/* libcurl goes on using an HTTP/2 connection on which a request stalled; without this the
+	 * kernel takes a quarter of an hour to find out that nobody is at the other end. */
+	if (fd >= 0 && setsockopt(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, &dead_ms, sizeof(dead_ms)) < 0)
+		log_debug("net", "a dead connection will not be noticed");
 	if (fd >= 0 && http->socket_count < SOCKETS_MAX)
 		http->sockets[http->socket_count++] = fd;
 	return fd < 0 ? CURL_SOCKET_BAD : fd;

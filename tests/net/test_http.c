@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -211,6 +212,24 @@ static int end_server(void **state)
 	return 0;
 }
 
+/* TCP_USER_TIMEOUT of the connection to the server, as of the last piece. */
+static unsigned dead_after_ms;
+
+static void look_at_connection(void)
+{
+	for (int fd = 3; fd < 64; fd++) {
+		struct sockaddr_in peer = {
+			0
+		}; /* of another kind of socket only the family comes */
+		socklen_t size = sizeof(peer), number = sizeof(dead_after_ms);
+
+		if (getpeername(fd, (struct sockaddr *)&peer, &size) == 0 &&
+		    peer.sin_family == AF_INET && ntohs(peer.sin_port) == server.port)
+			CHECK(getsockopt(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, &dead_after_ms,
+					 &number) == 0);
+	}
+}
+
 struct outcome {
 	char why[128];
 	char body[64], etag[64];
@@ -227,6 +246,7 @@ static bool on_piece(void *data, struct bytes piece)
 	CHECK(outcome->size + piece.size < sizeof(outcome->body));
 	memcpy(outcome->body + outcome->size, piece.data, piece.size);
 	outcome->size += piece.size;
+	look_at_connection();
 	return true;
 }
 
@@ -471,6 +491,15 @@ static void refuses_slow_retrieval(void **state)
 	CHECK(clock_now_ms() - began_ms < 10000); /* long before it would count as stalled */
 }
 
+/* A connection to a machine that vanished takes requests as before, and answers none. */
+static void has_the_kernel_end_a_dead_connection(void **state)
+{
+	(void)state;
+	dead_after_ms = 0;
+	(void)fetch("whole", 0, 0);
+	CHECK(dead_after_ms > 0 && dead_after_ms <= 60000);
+}
+
 static void asks_conditionally(void **state)
 {
 	struct outcome outcome;
@@ -536,6 +565,7 @@ int main(void)
 		cmocka_unit_test(follows_a_few_redirections_only),
 		cmocka_unit_test(takes_no_headers_without_end),
 		cmocka_unit_test(refuses_slow_retrieval),
+		cmocka_unit_test(has_the_kernel_end_a_dead_connection),
 		cmocka_unit_test(asks_conditionally),
 		cmocka_unit_test(reads_a_folder_like_a_server),
 		cmocka_unit_test(knows_which_urls_it_can_serve),
