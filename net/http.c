@@ -481,6 +481,8 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_PRIVATE, request);
 	curl_easy_setopt(easy, CURLOPT_ERRORBUFFER, request->error);
 	curl_easy_setopt(easy, CURLOPT_NOSIGNAL, 1L);
+	/* the end of a request does not wait for a name server that does not answer */
+	curl_easy_setopt(easy, CURLOPT_QUICK_EXIT, 1L);
 	/* the museum's server is reached without a proxy */
 	curl_easy_setopt(easy, CURLOPT_NOPROXY, "*");
 	curl_easy_setopt(easy, CURLOPT_USERAGENT, "gopura-fetch");

@@ -2,7 +2,9 @@
 #include "net/http.h"
 
 #include <arpa/inet.h>
+#include <dlfcn.h>
 #include <errno.h>
+#include <netdb.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <pthread.h>
@@ -210,6 +212,29 @@ static int end_server(void **state)
 	pthread_join(neighbour.thread, NULL);
 	close(neighbour.listener);
 	return 0;
+}
+
+#define SWALLOWED "swallowed.example"
+
+static struct {
+	_Atomic bool asked, may_answer, answered;
+} names;
+
+/* In place of the C library's: libcurl calls it on a thread of its own. */
+int getaddrinfo(const char *name, const char *service, const struct addrinfo *hints,
+		struct addrinfo **out)
+{
+	int (*real)(const char *, const char *, const struct addrinfo *, struct addrinfo **);
+
+	if (strcmp(name, SWALLOWED) != 0) {
+		*(void **)&real = dlsym(RTLD_NEXT, "getaddrinfo");
+		return real(name, service, hints, out);
+	}
+	names.asked = true;
+	for (int i = 0; i < 300 && !names.may_answer; i++)
+		poll(NULL, 0, 10);
+	names.answered = true;
+	return EAI_AGAIN;
 }
 
 /* TCP_USER_TIMEOUT of the connection to the server, as of the last piece. */
@@ -500,6 +525,28 @@ static void has_the_kernel_end_a_dead_connection(void **state)
 	CHECK(dead_after_ms > 0 && dead_after_ms <= 60000);
 }
 
+/* A name server that swallows queries. */
+static void waits_for_no_name(void **state)
+{
+	const struct http_options options = { .url = "http://" SWALLOWED };
+	struct http_get ask = { .path = "whole", .receive = on_piece, .done = on_done };
+	struct pollfd ready = { .events = POLLIN };
+	struct http_request *request;
+	struct http *http;
+
+	(void)state;
+	CHECK(http_create(&http, &options) == 0 && http_get(http, &ask, &request) == 0);
+	ready.fd = http_fd(http);
+	while (!names.asked && poll(&ready, 1, 100) >= 0)
+		CHECK(http_dispatch(http) == 0);
+	http_cancel(request);
+	http_destroy(http);
+	CHECK(!names.answered);
+	names.may_answer = true;
+	while (!names.answered)
+		poll(NULL, 0, 10);
+}
+
 static void asks_conditionally(void **state)
 {
 	struct outcome outcome;
@@ -566,6 +613,7 @@ int main(void)
 		cmocka_unit_test(takes_no_headers_without_end),
 		cmocka_unit_test(refuses_slow_retrieval),
 		cmocka_unit_test(has_the_kernel_end_a_dead_connection),
+		cmocka_unit_test(waits_for_no_name),
 		cmocka_unit_test(asks_conditionally),
 		cmocka_unit_test(reads_a_folder_like_a_server),
 		cmocka_unit_test(knows_which_urls_it_can_serve),
