@@ -248,6 +248,7 @@ void reader_string(struct reader *reader, char *out, size_t out_bytes)
 
 int buffer_read_fd(struct buffer *out, int fd)
 {
+	const off_t at = fd < 0 ? 0 : lseek(fd, 0, SEEK_CUR); /* negative for a pipe */
 	uint8_t chunk[65536];
 	struct stat info;
 	ssize_t got;
@@ -256,7 +257,8 @@ int buffer_read_fd(struct buffer *out, int fd)
 	buffer_clear(out);
 	if (fd < 0)
 		return fd;
-	if (fstat(fd, &info) == 0 && (uint64_t)info.st_size > out->ceiling) {
+	if (fstat(fd, &info) == 0 && info.st_size > at &&
+	    (uint64_t)(info.st_size - (at > 0 ? at : 0)) > out->ceiling) {
 		close(fd);
 		return -EFBIG;
 	}

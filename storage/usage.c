@@ -1,5 +1,5 @@
 /* Keeps the hourly counts of visitors' actions in a CSV file: reads and tidies it at the start,
- * then appends. */
+ * then appends, and tidies it again when it has grown. */
 #include "storage/usage.h"
 
 #include <ctype.h>
@@ -14,8 +14,16 @@
 
 #include "base/bytes.h"
 #include "base/log.h"
+#include "base/safe_open.h"
 
-enum { HOUR_BYTES = 16, WHAT_BYTES = 72, LANGUAGE_BYTES = 20, PENDING_MAX = 256, DAY_S = 86400 };
+enum {
+	HOUR_BYTES = 16,
+	WHAT_BYTES = 72,
+	LANGUAGE_BYTES = 20,
+	PENDING_MAX = 256,
+	DAY_S = 86400,
+	GROWTH_BYTES = 1 << 20, /* beyond twice its tidy size the file is tidied again */
+};
 
 static const char header[] = "hour,kind,what,language,count\n";
 static const char *const kind_names[] = { "visit", "part", "page", "language", "search", "tour" };
@@ -34,6 +42,8 @@ struct usage {
 	char *path, *copy_path;
 	struct entry pending[PENDING_MAX];
 	size_t pending_count;
+	size_t file_bytes, tidy_bytes; /* of the file: now, and when it was tidy */
+	int64_t now_s;                 /* wall clock of the last event; 0: may not be set */
 	bool complained;
 };
 
@@ -108,7 +118,7 @@ static bool parse_line(char *line, struct entry *out)
 	return *end == '\0';
 }
 
-/* ---- the file at the start */
+/* ---- the tidy file */
 
 static int compare(const void *a, const void *b)
 {
@@ -157,20 +167,32 @@ static size_t parse(struct buffer *text, struct entry *entries, size_t *bad)
 	return count;
 }
 
-static size_t sum_up(struct entry *entries, size_t count, const char *oldest)
+static size_t sum_up(struct entry *entries, size_t count)
 {
 	size_t kept = 0;
 
 	qsort(entries, count, sizeof(*entries), compare);
 	for (size_t i = 0; i < count; i++) {
-		if (strcmp(entries[i].hour, oldest) < 0)
-			continue;
 		if (kept > 0 && compare(&entries[kept - 1], &entries[i]) == 0)
 			entries[kept - 1].count += entries[i].count;
 		else
 			entries[kept++] = entries[i];
 	}
 	return kept;
+}
+
+/* Returns how many of the entries, in their order, are too old. */
+static size_t count_old(const struct entry *entries, size_t count, int64_t now_s)
+{
+	char oldest[HOUR_BYTES];
+	size_t old = 0;
+
+	if (now_s == 0)
+		return 0;
+	hour_of(now_s - (int64_t)USAGE_KEPT_DAYS * DAY_S, oldest);
+	while (old < count && strcmp(entries[old].hour, oldest) < 0)
+		old++;
+	return old;
 }
 
 static void complain(struct usage *usage, const char *path, int rc)
@@ -183,33 +205,45 @@ static void complain(struct usage *usage, const char *path, int rc)
 /* Replaces the contents of the file in text with the tidy version. */
 static int tidy(struct buffer *text, const char *path, int64_t now_s)
 {
-	char oldest[HOUR_BYTES] = "";
 	struct entry *entries = calloc(count_lines(buffer_bytes(text)) + 1, sizeof(*entries));
 	size_t count, bad;
 
 	if (!entries)
 		return -ENOMEM;
-	if (now_s > 0)
-		hour_of(now_s - (int64_t)USAGE_KEPT_DAYS * DAY_S, oldest);
-	count = sum_up(entries, parse(text, entries, &bad), oldest);
+	count = sum_up(entries, parse(text, entries, &bad));
 	if (bad > 0)
 		log_warn("storage", "%s: %zu lines are not valid counts and were skipped", path,
 			 bad);
 	buffer_clear(text);
 	buffer_put(text, header, sizeof(header) - 1);
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = count_old(entries, count, now_s); i < count; i++)
 		put_line(text, &entries[i]);
 	free(entries);
 	return text->error;
 }
 
-static int begin_files(struct usage *usage, int64_t now_s)
+/* Of a file that is too large, the newest half of what it may have. The line that is cut is not
+ * valid, as its hour is not. */
+static int read_newest(struct buffer *text, const char *path)
+{
+	int fd = open_regular(path);
+
+	if (fd >= 0 && lseek(fd, -(USAGE_FILE_MAX / 2), SEEK_END) < 0) {
+		close(fd);
+		return -EIO;
+	}
+	return buffer_read_fd(text, fd);
+}
+
+static int tidy_files(struct usage *usage, int64_t now_s)
 {
 	struct buffer text;
 	int rc;
 
 	buffer_init(&text, USAGE_FILE_MAX);
 	rc = buffer_read_file(&text, usage->path);
+	if (rc == -EFBIG)
+		rc = read_newest(&text, usage->path);
 	if (rc == -ENOENT)
 		rc = 0;
 	if (rc == 0)
@@ -218,6 +252,9 @@ static int begin_files(struct usage *usage, int64_t now_s)
 		rc = bytes_write_file(buffer_bytes(&text), usage->path);
 	if (rc < 0 && rc != -ENOMEM)
 		complain(usage, usage->path, rc);
+	if (rc == 0)
+		usage->file_bytes = text.size;
+	usage->tidy_bytes = usage->file_bytes; /* or it is tried again when it has grown */
 	if (rc == 0 && usage->copy_path) {
 		int copied = bytes_write_file(buffer_bytes(&text), usage->copy_path);
 
@@ -242,7 +279,7 @@ int usage_create(struct usage **out, const char *path, const char *copy_path, in
 		return -ENOMEM;
 	usage->path = strdup(path);
 	usage->copy_path = copy_path ? strdup(copy_path) : NULL;
-	rc = usage->path && (usage->copy_path || !copy_path) ? begin_files(usage, now_s) : -ENOMEM;
+	rc = usage->path && (usage->copy_path || !copy_path) ? tidy_files(usage, now_s) : -ENOMEM;
 	if (rc < 0) {
 		usage_destroy(usage);
 		return rc;
@@ -268,6 +305,7 @@ void usage_add(struct usage *usage, enum usage_kind kind, const char *what, cons
 {
 	struct entry entry = { .kind = kind, .count = 1 };
 
+	usage->now_s = now_s;
 	hour_of(now_s, entry.hour);
 	snprintf(entry.what, sizeof(entry.what), "%s", is_word(what) ? what : "");
 	snprintf(entry.language, sizeof(entry.language), "%s", is_word(language) ? language : "");
@@ -308,14 +346,19 @@ void usage_write(struct usage *usage)
 	rc = lines.error;
 	if (rc == 0)
 		rc = append(usage->path, buffer_bytes(&lines));
-	if (rc == 0) /* else they stay pending and are tried again */
+	if (rc == 0) { /* else they stay pending and are tried again */
 		usage->pending_count = 0;
-	else
+		usage->file_bytes += lines.size;
+	} else {
 		complain(usage, usage->path, rc);
+	}
 	if (rc == 0 && usage->copy_path) {
 		rc = append(usage->copy_path, buffer_bytes(&lines));
 		if (rc < 0)
 			complain(usage, usage->copy_path, rc);
 	}
 	buffer_finish(&lines);
+	if (usage->file_bytes > 2 * usage->tidy_bytes + GROWTH_BYTES &&
+	    tidy_files(usage, usage->now_s) < 0)
+		log_debug("storage", "out of memory for the counts of visitors");
 }

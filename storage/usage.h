@@ -4,8 +4,8 @@
  *
  * Counts are collected in memory. usage_write, called when a visit ends, appends them to the file
  * without waiting for the disk. A power cut loses what was counted since then, and what the kernel
- * had not yet written. An incomplete line is dropped at the next start, and repeated entries are
- * then added up. One thread. */
+ * had not yet written. At the start, and when the file has grown much, it is made tidy: an
+ * incomplete line is dropped, and repeated entries are added up. One thread. */
 #ifndef GOPURA_STORAGE_USAGE_H
 #define GOPURA_STORAGE_USAGE_H
 
@@ -19,10 +19,11 @@ enum { USAGE_KEPT_DAYS = 400, USAGE_FILE_MAX = 32 << 20 };
 
 struct usage;
 
-/* Reads the file at path, adds up its entries, and removes what is too old or not valid. copy_path
- * (NULL: none) gets the same contents and is kept up to date: for programs that must not read
- * path's folder. now_s: wall clock, seconds since 1970; 0 if it may not be set. *out is owned by
- * the caller. Fails only with -ENOMEM: other errors are logged, and counting goes on in memory. */
+/* Reads the file at path, adds up its entries, and removes what is too old or not valid. Of a file that is larger than USAGE_FILE_MAX
+ * the newest half of that is read. copy_path (NULL: none) gets the same contents and is kept up to
+ * date: for programs that must not read path's folder. now_s: wall clock, seconds since 1970; 0 if
+ * it may not be set. *out is owned by the caller. Fails only with -ENOMEM: other errors are logged,
+ * and counting goes on in memory. */
 must_check int usage_create(struct usage **out, const char *path, const char *copy_path,
 			    int64_t now_s);
 void usage_destroy(struct usage *usage); /* writes what is pending; NULL is fine */
@@ -31,7 +32,8 @@ void usage_destroy(struct usage *usage); /* writes what is pending; NULL is fine
  * letters, digits, - and _; other values count as "". */
 void usage_add(struct usage *usage, enum usage_kind kind, const char *what, const char *language,
 	       int64_t now_s);
-/* Appends what was counted since the last write to the file. */
+/* Appends what was counted since the last write to the file. If the file has grown much, it is made
+ * tidy, which waits for the disk. */
 void usage_write(struct usage *usage);
 
 #endif

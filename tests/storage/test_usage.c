@@ -110,6 +110,55 @@ static void keeps_four_hundred_days(void **state)
 			  "unset,visit,,en,7\n");
 }
 
+/* Counts of many parts by a visitor, each a line of its own. */
+static void visit(struct usage *usage)
+{
+	char part[24];
+
+	for (int i = 0; i < 200; i++) {
+		snprintf(part, sizeof(part), "part-%d", i);
+		usage_add(usage, USAGE_PART, part, "en", noon);
+	}
+	usage_write(usage);
+}
+
+static void sums_up_in_a_terminal_that_is_never_switched_off(void **state)
+{
+	struct usage *usage = begin(noon);
+	struct stat status, copied;
+
+	(void)state;
+	for (int i = 0; i < 1000; i++)
+		visit(usage);
+	CHECK(stat(path, &status) == 0 && status.st_size < 2 << 20);
+	CHECK(stat(copy, &copied) == 0 && copied.st_size == status.st_size);
+	usage_destroy(usage);
+	usage_destroy(begin(noon));
+	CHECK(stat(path, &status) == 0 && status.st_size < 200 * 50);
+}
+
+static void keeps_the_newest_of_a_file_that_is_too_large(void **state)
+{
+	static const char early[] = "2026-11-28T10,visit,,en,1\n";
+	static const char late[] = "2026-11-29T11,visit,,en,8\n";
+	const size_t line_bytes = sizeof(early) - 1;
+	struct buffer text;
+	char expected[200];
+
+	(void)state;
+	buffer_init(&text, 2 * USAGE_FILE_MAX);
+	while (text.size <= USAGE_FILE_MAX)
+		buffer_put(&text, early, line_bytes);
+	buffer_put(&text, late, sizeof(late) - 1);
+	CHECK(bytes_write_file(buffer_bytes(&text), path) == 0);
+	buffer_finish(&text);
+	usage_destroy(begin(noon));
+	snprintf(expected, sizeof(expected), HEADER "2026-11-28T10,visit,,en,%zu\n%s",
+		 (USAGE_FILE_MAX / 2 - (sizeof(late) - 1)) / line_bytes, late);
+	says(path, expected);
+	says(copy, expected);
+}
+
 static void leaves_out_what_is_no_count(void **state)
 {
 	(void)state;
@@ -160,6 +209,8 @@ int main(void)
 		FILED(counts_by_hour_kind_part_and_language),
 		FILED(sums_up_at_the_next_start),
 		FILED(keeps_four_hundred_days),
+		FILED(sums_up_in_a_terminal_that_is_never_switched_off),
+		FILED(keeps_the_newest_of_a_file_that_is_too_large),
 		FILED(leaves_out_what_is_no_count),
 		FILED(the_copy_says_the_same_to_everybody),
 		FILED(goes_on_without_a_disk),
