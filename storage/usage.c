@@ -181,7 +181,8 @@ static size_t sum_up(struct entry *entries, size_t count)
 	return kept;
 }
 
-/* Returns how many of the entries, in their order, are too old. */
+/* Returns how many of the entries, in their order, are too old. If that were more than half, it is
+ * the clock that is wrong: then none is. */
 static size_t count_old(const struct entry *entries, size_t count, int64_t now_s)
 {
 	char oldest[HOUR_BYTES];
@@ -192,7 +193,7 @@ static size_t count_old(const struct entry *entries, size_t count, int64_t now_s
 	hour_of(now_s - (int64_t)USAGE_KEPT_DAYS * DAY_S, oldest);
 	while (old < count && strcmp(entries[old].hour, oldest) < 0)
 		old++;
-	return old;
+	return old > count / 2 ? 0 : old;
 }
 
 static void complain(struct usage *usage, const char *path, int rc)

@@ -19,7 +19,8 @@ enum { USAGE_KEPT_DAYS = 400, USAGE_FILE_MAX = 32 << 20 };
 
 struct usage;
 
-/* Reads the file at path, adds up its entries, and removes what is too old or not valid. Of a file that is larger than USAGE_FILE_MAX
+/* Reads the file at path, adds up its entries, and removes what is too old or not valid; nothing is
+ * too old if most is, because then the clock is wrong. Of a file that is larger than USAGE_FILE_MAX
  * the newest half of that is read. copy_path (NULL: none) gets the same contents and is kept up to
  * date: for programs that must not read path's folder. now_s: wall clock, seconds since 1970; 0 if
  * it may not be set. *out is owned by the caller. Fails only with -ENOMEM: other errors are logged,

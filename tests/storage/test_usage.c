@@ -110,6 +110,19 @@ static void keeps_four_hundred_days(void **state)
 			  "unset,visit,,en,7\n");
 }
 
+/* By a clock whose battery is empty, say. */
+static void a_wrong_year_forgets_nothing(void **state)
+{
+	static const char counts[] = HEADER "2026-11-28T11,visit,,en,5\n2026-11-28T12,visit,,en,6\n"
+					    "2026-11-29T11,visit,,en,8\n";
+
+	(void)state;
+	write_text(counts);
+	for (int year = 0; year < 3; year++)
+		usage_destroy(begin(noon + (int64_t)(20 + year) * 365 * DAY_S));
+	says(path, counts);
+}
+
 /* Counts of many parts by a visitor, each a line of its own. */
 static void visit(struct usage *usage)
 {
@@ -209,6 +222,7 @@ int main(void)
 		FILED(counts_by_hour_kind_part_and_language),
 		FILED(sums_up_at_the_next_start),
 		FILED(keeps_four_hundred_days),
+		FILED(a_wrong_year_forgets_nothing),
 		FILED(sums_up_in_a_terminal_that_is_never_switched_off),
 		FILED(keeps_the_newest_of_a_file_that_is_too_large),
 		FILED(leaves_out_what_is_no_count),
