@@ -266,7 +266,7 @@ static void send_status(struct fetch *fetch)
 	status->received_bytes = http_received_bytes(fetch->http);
 	status->cache_bytes = cache_file_bytes(fetch->cache);
 	status->cache_budget_bytes = cache_budget_bytes(fetch->cache);
-	status->offline_since_s = fetch->link.offline_since_s;
+	status->offline_since_s = link_offline_since_s(&fetch->link);
 	if (memcmp(status, &fetch->sent_status, sizeof(*status)) == 0 &&
 	    clock_now_ms() < fetch->sent_status_ms + ALIVE_MS) {
 		/* or earlier, when something happens */
@@ -297,8 +297,8 @@ static void write_refusal(const struct metrics_refusal *refusal, struct buffer *
 
 static void write_metrics(void *data, struct buffer *out)
 {
-	const struct fetch *fetch = data;
-	const struct link *link = &fetch->link;
+	struct fetch *fetch = data;
+	struct link *link = &fetch->link;
 	struct downloader_counters objects;
 
 	downloader_counters(fetch->downloader, &objects);
@@ -306,7 +306,7 @@ static void write_metrics(void *data, struct buffer *out)
 		      link->online);
 	metrics_gauge(out, "gopura_fetch_offline_since_seconds",
 		      "Time since when the server is offline; 0 while online.",
-		      (double)link->offline_since_s);
+		      (double)link_offline_since_s(link));
 	metrics_gauge(out, "gopura_fetch_kiosk_connected", "Whether a kiosk is connected.",
 		      fetch->has_kiosk);
 	metrics_gauge(out, "gopura_fetch_wanted", "Objects that the kiosk waits for.",

@@ -22,8 +22,7 @@ int64_t link_pause_ms(uint32_t failures)
 
 void link_init(struct link *link)
 {
-	*link = (struct link){ .online = false };
-	link->offline_since_s = (uint64_t)clock_wall_s();
+	*link = (struct link){ .offline_ms = clock_now_ms() };
 }
 
 void link_answered(struct link *link)
@@ -32,7 +31,6 @@ void link_answered(struct link *link)
 		log_info("net", "online");
 	link->answers++;
 	link->online = true;
-	link->offline_since_s = 0;
 	link->failures = 0;
 	link->retry_at_ms = 0;
 }
@@ -48,10 +46,22 @@ void link_failed(struct link *link, const char *url, const char *why)
 		log_warn("net", "offline: %s: %s", url, why);
 	metrics_refusal_note(link->refusal, url, why); /* the last one is the one to be cured */
 	if (link->online)
-		link->offline_since_s = (uint64_t)clock_wall_s();
+		link->offline_ms = clock_now_ms();
 	link->online = false;
 	link->failures++;
 	link->retry_at_ms = clock_now_ms() + link_pause_ms(link->failures);
+}
+
+uint64_t link_offline_since_s(struct link *link)
+{
+	const int64_t since_s = clock_wall_s() - (clock_now_ms() - link->offline_ms) / 1000;
+
+	if (link->online)
+		return 0;
+	/* Both clocks are rounded, which is no reason to tell another second. */
+	if (llabs(since_s - (int64_t)link->offline_since_s) > 1)
+		link->offline_since_s = since_s > 0 ? (uint64_t)since_s : 1;
+	return link->offline_since_s;
 }
 
 bool link_may_request(const struct link *link)

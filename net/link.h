@@ -14,9 +14,11 @@ enum { NO_MEMORY_MS = 1000 }; /* until what failed without memory is tried again
 struct link {
 	uint32_t failures; /* in a row, since the last answer */
 	int64_t retry_at_ms;
-	bool online;              /* the last request was answered; false before the first one */
-	uint64_t offline_since_s; /* wall clock; 0 while online */
-	uint32_t in_flight;       /* number of requests in flight */
+	bool online; /* the last request was answered; false before the first one */
+	/* Since when it is offline: clock_now_ms, and what link_offline_since_s said last. */
+	int64_t offline_ms;
+	uint64_t offline_since_s;
+	uint32_t in_flight;              /* number of requests in flight */
 	struct metrics_refusal *refusal; /* where refusals are noted; borrowed; NULL: nowhere */
 	uint64_t answers, errors;        /* requests that ended this way since link_init */
 };
@@ -34,6 +36,9 @@ void link_failed(struct link *link, const char *url, const char *why);
 /* Returns whether a request may be sent now. After a failure only one at a time, after its
  * pause. */
 bool link_may_request(const struct link *link);
+/* Returns since when the server is offline, by the wall clock of now, which may have been set
+ * meanwhile; 0 while online. */
+uint64_t link_offline_since_s(struct link *link);
 /* Returns true after two failures in a row. A single one may be a server that restarts. */
 bool link_is_down(const struct link *link);
 

@@ -28,8 +28,9 @@ static struct fake_server {
 	size_t count; /* requests so far */
 	size_t cancelled;
 	int64_t now_ms;
-	bool is_giving; /* a receiver must not call into http */
-	bool is_full;   /* http_get has no memory */
+	int64_t wall_ahead_s; /* the wall clock was set by so much */
+	bool is_giving;       /* a receiver must not call into http */
+	bool is_full;         /* http_get has no memory */
 } server;
 
 int64_t clock_now_ms(void)
@@ -49,7 +50,7 @@ int64_t clock_thread_us(void)
 
 int64_t clock_wall_s(void)
 {
-	return 1700000000 + server.now_ms / 1000;
+	return 1700000000 + server.now_ms / 1000 + server.wall_ahead_s;
 }
 
 int http_create(struct http **out, const struct http_options *options)
