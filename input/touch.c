@@ -41,7 +41,8 @@ struct touch {
 	char *folder, *replay_path;
 	bool is_calibrated; /* calibrated by the options: udev is not asked */
 	int epoll_fd, inotify_fd, timer_fd;
-	int parent_watch; /* inotify watch of the parent while the folder is missing, else -1 */
+	int folder_watch; /* inotify watch of the folder; -1 while it is missing */
+	int parent_watch; /* of its parent while the folder is missing, else -1 */
 	struct source sources[DEVICES_MAX];
 	struct contacts contacts;
 	struct touch_replay replay;
@@ -135,19 +136,17 @@ static void scan(struct touch *touch)
 	closedir(folder);
 }
 
-/* Where there is no input device yet /dev/input may be missing: then its parent is watched. */
-static void watch_folder(struct touch *touch)
+static bool watch_devices(struct touch *touch)
+{
+	touch->folder_watch = inotify_add_watch(touch->inotify_fd, touch->folder,
+						IN_CREATE | IN_ATTRIB | IN_MOVED_TO);
+	return touch->folder_watch >= 0;
+}
+
+static void watch_parent(struct touch *touch)
 {
 	char parent[PATH_MAX];
 
-	if (touch->parent_watch >= 0)
-		inotify_rm_watch(touch->inotify_fd, touch->parent_watch);
-	touch->parent_watch = -1;
-	if (inotify_add_watch(touch->inotify_fd, touch->folder,
-			      IN_CREATE | IN_ATTRIB | IN_MOVED_TO) >= 0) {
-		scan(touch);
-		return;
-	}
 	snprintf(parent, sizeof(parent), "%s", touch->folder);
 	if (strrchr(parent, '/'))
 		strrchr(parent, '/')[1] = 0;
@@ -156,6 +155,21 @@ static void watch_folder(struct touch *touch)
 		log_warn("input",
 			 "%s cannot be watched (%s), so devices plugged in later are not found",
 			 touch->folder, strerror(errno));
+}
+
+/* Where there is no input device /dev/input may be missing, or be removed: then its parent is
+ * watched. */
+static void watch_folder(struct touch *touch)
+{
+	if (touch->parent_watch >= 0)
+		inotify_rm_watch(touch->inotify_fd, touch->parent_watch);
+	touch->parent_watch = -1;
+	if (!watch_devices(touch)) {
+		watch_parent(touch);
+		if (!watch_devices(touch)) /* it may have come meanwhile */
+			return;
+	}
+	scan(touch);
 }
 
 static void read_source(struct touch *touch, struct source *source)
@@ -176,13 +190,23 @@ static void read_source(struct touch *touch, struct source *source)
 		remove_source(touch, source);
 }
 
+/* Returns whether the folder was removed, or may have come: then it is watched anew. */
+static bool concerns_folder(const struct touch *touch, const struct inotify_event *event)
+{
+	if (event->mask & IN_Q_OVERFLOW)
+		return true; /* events were lost */
+	if (event->mask & IN_IGNORED)
+		return event->wd == touch->folder_watch;
+	return event->wd == touch->parent_watch;
+}
+
 static void read_changes(struct touch *touch)
 {
 	union {
 		struct inotify_event event;
 		char bytes[4096];
 	} buffer;
-	bool folder_may_have_come = false;
+	bool watch_anew = false;
 	ssize_t size;
 
 	while ((size = read(touch->inotify_fd, buffer.bytes, sizeof(buffer.bytes))) > 0) {
@@ -190,13 +214,13 @@ static void read_changes(struct touch *touch)
 			struct inotify_event event;
 
 			memcpy(&event, buffer.bytes + at, sizeof(event));
-			folder_may_have_come |= event.wd == touch->parent_watch;
+			watch_anew |= concerns_folder(touch, &event);
 			if (event.len > 0 && event.wd != touch->parent_watch)
 				try_device(touch, buffer.bytes + at + sizeof(event));
 			at += (ssize_t)(sizeof(event) + event.len);
 		}
 	}
-	if (folder_may_have_come && touch->parent_watch >= 0)
+	if (watch_anew)
 		watch_folder(touch);
 }
 
@@ -313,7 +337,8 @@ int touch_create(struct touch **out, const struct touch_options *options)
 		.event = options->event,
 		.data = options->data,
 	};
-	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = touch->parent_watch = -1;
+	touch->epoll_fd = touch->inotify_fd = touch->timer_fd = -1;
+	touch->folder_watch = touch->parent_watch = -1;
 	rc = start(touch, options);
 	if (rc < 0) {
 		touch_destroy(touch);

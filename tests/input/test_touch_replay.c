@@ -167,6 +167,49 @@ static void waits_for_devices_that_may_come(void **state)
 	rmdir(folder);
 }
 
+/* Takes in what was heard, and checks that this ends. */
+static void take_in(struct touch *touch)
+{
+	struct pollfd wait = { .fd = touch_fd(touch), .events = POLLIN };
+
+	for (int i = 0; poll(&wait, 1, 0) == 1; i++)
+		CHECK(i < 20 && touch_dispatch(touch) == 0);
+}
+
+/* As the kernel does when the last device is unplugged and one is plugged in again. */
+static void listens_again_after_the_folder_was_removed(void **state)
+{
+	char dev[] = "/tmp/gopura-input-XXXXXX", folder[100], path[120];
+	struct touch_options options = { .width_px = 100, .height_px = 100, .folder = folder };
+	struct pollfd wait = { .events = POLLIN };
+	struct touch *touch;
+
+	(void)state;
+	CHECK(mkdtemp(dev));
+	snprintf(folder, sizeof(folder), "%s/input", dev);
+	CHECK(mkdir(folder, 0700) == 0 && touch_create(&touch, &options) == 0);
+	wait.fd = touch_fd(touch);
+	snprintf(path, sizeof(path), "%s/event3", folder);
+	for (int round = 0; round < 6; round++) {
+		int fd;
+
+		CHECK(rmdir(folder) == 0);
+		if (round % 2)
+			take_in(touch);
+		CHECK(mkdir(folder, 0700) == 0);
+		take_in(touch);
+		fd = open(path, O_CREAT | O_WRONLY, 0600);
+		CHECK(fd >= 0);
+		close(fd);
+		CHECK(poll(&wait, 1, 5000) == 1);
+		CHECK(unlink(path) == 0);
+		take_in(touch);
+	}
+	touch_destroy(touch);
+	rmdir(folder);
+	rmdir(dev);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -174,6 +217,7 @@ int main(void)
 		cmocka_unit_test(names_the_line_of_a_fault),
 		cmocka_unit_test(plays_through_one_fd),
 		cmocka_unit_test(waits_for_devices_that_may_come),
+		cmocka_unit_test(listens_again_after_the_folder_was_removed),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
