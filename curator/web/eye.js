@@ -190,8 +190,5 @@ export class Eye {
       event.preventDefault();
       if (this.camera) this.zoom(Math.exp(Math.max(-240, Math.min(240, event.deltaY * (event.deltaMode ? 30 : 1))) * 0.0015));
     }, { passive: false });
-    // A browser may keep a page that was left, with its socket, and the program has few. If it is shown again it begins anew.
-    addEventListener("pagehide", () => this.socket?.close());
-    addEventListener("pageshow", event => { if (event.persisted) location.reload(); });
   }
 }
