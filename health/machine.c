@@ -1,6 +1,6 @@
 /* Reads memory, temperature, disk writes, uptime and firmware slot from /proc and /sys, the room on
- * the data partition, why that is not encrypted (a note by image/init), which system was found good
- * (a note by gopura-good), and the file of set-up faults. */
+ * the data partition, why that is not encrypted or not used (notes by image/init), which system was
+ * found good (a note by gopura-good), and the file of set-up faults. */
 #include "health/machine.h"
 
 #include <dirent.h>
@@ -30,6 +30,13 @@ static bool read_text(char *out, size_t out_bytes, const char *root, const char 
 	}
 	out[size] = '\0';
 	return file;
+}
+
+/* The same, of its first line. */
+static void read_line(char *out, size_t out_bytes, const char *root, const char *path)
+{
+	read_text(out, out_bytes, root, path);
+	out[strcspn(out, "\n")] = '\0';
 }
 
 static double number_after(const char *text, const char *word)
@@ -155,8 +162,8 @@ void machine_read(struct machine *out, const struct machine_options *options)
 	read_slot(out, options->root);
 	read_newer(out, options->root);
 	read_data(out, options->data);
-	read_text(out->data_plain, sizeof(out->data_plain), options->root,
+	read_line(out->data_plain, sizeof(out->data_plain), options->root,
 		  "/run/gopura-data-plain");
-	out->data_plain[strcspn(out->data_plain, "\n")] = '\0';
+	read_line(out->data_lost, sizeof(out->data_lost), options->root, "/run/gopura-data-lost");
 	out->is_set_up = read_text(out->faults, sizeof(out->faults), "", options->faults);
 }

@@ -23,6 +23,7 @@ struct machine {
 	double data_bytes, data_free_bytes; /* of the data partition, as available to users */
 	double written_bytes;               /* written to all disks since boot */
 	char data_plain[128]; /* why data is plain though the image encrypts it, or "" */
+	char data_lost[128];  /* why memory takes the data partition's place, or "" */
 	bool is_set_up;       /* gopura-setup has written the faults, if only that there are none */
 	char faults[MACHINE_FAULTS_BYTES_MAX];
 };

@@ -281,7 +281,14 @@ static void judge_machine(struct verdict *verdict, const struct snapshot *snapsh
 		    "Programs may be ended by the system. Switch the terminal off and on. If this "
 		    "message returns, lower texture_mib and geometry_mib in the board profile.",
 		    "%.0f of %.0f MB are free.", m->memory_free_bytes / 1e6, m->memory_bytes / 1e6);
-	if (m->data_free_bytes < data_low * m->data_bytes)
+	if (m->data_lost[0])
+		add(verdict, LEVEL_WARNING, "Nothing is stored on the disk",
+		    "Memory takes its place: each start loads everything again, from the system, a stick or "
+		    "the museum server. If the TPM is to blame, switch it on in the firmware's setup (it may "
+		    "be called fTPM, PTT or security device). Otherwise switch the terminal off and on; if "
+		    "this message returns, replace the card or disk.",
+		    "%s", m->data_lost);
+	else if (m->data_free_bytes < data_low * m->data_bytes)
 		add(verdict, LEVEL_WARNING, "The disk is nearly full",
 		    "Soon, downloads can no longer be saved. Lower [cache] mib in the board profile, or "
 		    "use a larger card or disk.",

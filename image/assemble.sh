@@ -138,7 +138,7 @@ mkdir -p "$early/usr/lib/$triplet"
 libraries "$early/bin/dmsetup" | xargs cp -Lt "$early/usr/lib/$triplet"
 interpreter=$("${cross}readelf" -l "$early/bin/dmsetup" | sed -n 's/.*program interpreter: \(.*\)\]/\1/p')
 install -D "$(find "$tree/usr/lib" -name "${interpreter##*/}" -print -quit)" "$early$interpreter"
-for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir ln hexdump switch_root basename readlink; do
+for name in sh mount umount cat grep sed find sort xargs modprobe sleep reboot chroot wc tr mv mkdir ln dd hexdump switch_root basename readlink; do
 	ln -s busybox "$early/bin/$name"
 done
 install -m 755 "$here/init" "$early/init"

@@ -62,6 +62,7 @@ static void what_is_not_there_is_not_told(void **state)
 	CHECK(isnan(m.memory_free_bytes) && isnan(m.written_bytes));
 	CHECK(m.slot[0] == '\0' && m.faults[0] == '\0' && m.name[0] != '\0');
 	CHECK(m.data_plain[0] == '\0' && m.newer[0] == '\0' && !m.is_set_up);
+	CHECK(m.data_lost[0] == '\0');
 	CHECK(m.data_bytes > m.data_free_bytes && m.data_free_bytes > 0);
 	machine_read(&m, &(struct machine_options){ root, "/nowhere", "/nowhere" });
 	CHECK(isnan(m.data_bytes) && isnan(m.data_free_bytes));
@@ -86,6 +87,7 @@ static void the_kernels_files_are_understood(void **state)
 	write_file("/sys/block/sdb/stat", "");
 	write_file("/faults", "gopura.conf, line 3: what\n");
 	write_file("/run/gopura-data-plain", "No TPM.\n");
+	write_file("/run/gopura-data-lost", "It cannot be read.\n");
 	read_it(&m);
 	CHECK(m.uptime_s == 5402.51);
 	CHECK(m.memory_bytes == 2000 * 1024 && m.memory_free_bytes == 1500 * 1024);
@@ -94,6 +96,7 @@ static void the_kernels_files_are_understood(void **state)
 	CHECK(m.written_bytes == 1024 * 512);
 	CHECK(strcmp(m.faults, "gopura.conf, line 3: what\n") == 0 && m.is_set_up);
 	CHECK(strcmp(m.data_plain, "No TPM.") == 0);
+	CHECK(strcmp(m.data_lost, "It cannot be read.") == 0);
 }
 
 static void an_older_system_than_was_good_here_is_told(void **state)

@@ -282,6 +282,15 @@ static void a_terminal_without_settings_is_a_warning(void **state)
 	CHECK(verdict.count == 0);
 }
 
+static void memory_instead_of_the_disk_is_a_warning_and_never_nearly_full(void **state)
+{
+	(void)state;
+	snprintf(snapshot.machine.data_lost, sizeof(snapshot.machine.data_lost), "Unreadable.");
+	snapshot.machine.data_free_bytes = 0;
+	CHECK(finds(LEVEL_WARNING, "Nothing is stored"));
+	CHECK(strcmp(verdict.findings[0].detail, "Unreadable.") == 0);
+}
+
 static void each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first(void **state)
 {
 	(void)state;
@@ -347,6 +356,7 @@ int main(void)
 		CASE(says_days_before_what_must_be_signed_anew),
 		CASE(a_clock_that_nobody_set_judges_no_expiry),
 		CASE(data_that_should_be_encrypted_and_is_not_is_a_warning),
+		CASE(memory_instead_of_the_disk_is_a_warning_and_never_nearly_full),
 		CASE(each_error_of_gopura_conf_is_a_warning_and_the_worst_comes_first),
 		CASE(an_older_system_than_was_good_here_is_a_warning),
 		CASE(a_terminal_without_settings_is_a_warning),

@@ -53,13 +53,14 @@ def asked(port, path):
 
 
 class Appliance(Machine):
-    """A box with the disk's file; LOG: where what is written to the disk is noted too (writelog.py); MORE devices."""
+    """A box with the disk's file; LOG: where what is written to the disk is noted too (writelog.py); MORE devices; DRIVE: what
+    QEMU takes for the disk, if not simply the file (worn.py)."""
 
-    def __init__(self, disk, work, case, log=None, more=()):
+    def __init__(self, disk, work, case, log=None, more=(), drive=None):
         variables, self.disk = os.path.join(work, "variables.fd"), disk
         self.health = free_port()
         shutil.copy(VARIABLES, variables)
-        drive = ["-blockdev", f"driver=file,filename={disk},node-name={'file' if log else 'disk'},cache.no-flush=on"]
+        drive = drive or ["-blockdev", f"driver=file,filename={disk},node-name={'file' if log else 'disk'},cache.no-flush=on"]
         if log:
             open(log, "w").close()
             drive += ["-blockdev", f"driver=file,filename={log},node-name=log,cache.no-flush=on",
