@@ -161,12 +161,13 @@ interrupted: all $(BUILD)/.test-deps ## builds killed and out of disk at random 
 	@KILLS=$(or $(KILLS),50) FULL=$(or $(FULL),20) SEED=$(or $(SEED),1) bash tests/e2e/interrupted.sh
 	@KILLS=20 SEED=$(or $(SEED),1) bash tests/e2e/publish.sh
 
-qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk, changed bytes, Secure Boot, encrypted data; ARCH=arm64: temple, tap, updates, changed bytes and Secure Boot of that image; BOARD=raspberry-pi: its start
+qemu-test: all $(BUILD)/.test-deps ## test the image in QEMU: temple, tap, updates (good, tampered, blank, hanging), a gopura.conf on a stick, the choice of the disk, a disk that fails, changed bytes, Secure Boot, encrypted data; ARCH=arm64: temple, tap, updates, changed bytes and Secure Boot of that image; BOARD=raspberry-pi: its start
 ifeq ($(BOARD),raspberry-pi)
 	@bash tests/qemu/raspberry_pi.sh
 else
 	@bash tests/qemu/image.sh updates
 	@[ "$(ARCH)" = arm64 ] || bash tests/qemu/disks.sh all
+	@[ "$(ARCH)" = arm64 ] || bash tests/qemu/worn.sh
 	@bash tests/qemu/loader.sh all
 	@[ "$(ARCH)" = arm64 ] || bash tests/qemu/tpm.sh
 endif

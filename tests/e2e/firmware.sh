@@ -266,6 +266,7 @@ echo bundle1.raucb >"$root/run/gopura-bundle/chosen"
 nothing_asked "a bundle is installed without a floor"
 rmdir "$state/floor"
 mv "$work/floor" "$state/floor"
+
 # ---- memory in the place of the data partition: no restart, which could go on for ever, because of what is missing there
 rm "$state"/good-?
 echo 1 >"$root/run/gopura-kiosk/self-test"

@@ -33,7 +33,7 @@ TOOLS = {**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"}
 SHARES = {"data": 0.55, "esp": 0.25, "table": 0.1, "slot": 0.1}
 SAME_SHARE = 0.2  # of the panel: two pictures of one release differ less, by what was not yet brought; of two releases more
 COMPLAINTS = ("corrupt", "malformed", ".broken", "beyond repair", "damaged", "EXT4-fs error", "SQUASHFS error", "environment block", "crashed",
-              "core dump", "Failed with result", "gopura-safe.service", "self-test failed", "restarting in 10 s", "cannot be mounted")
+              "core dump", "Failed with result", "gopura-safe.service", "self-test failed", "restarting in 10 s", "nothing is stored")
 RELEASE = r"release (\d+) is (?:shown|stored)"
 # journald begins a new file after a cut, and says so in these words; the old one stays readable. The loader's FAT keeps a mark of a
 # cut while it was writable; nothing of its structure is ever changed.

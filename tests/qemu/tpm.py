@@ -17,6 +17,8 @@ FIRMWARE = "/usr/share/OVMF"
 KIND = ("qemu-system-x86_64", "-machine", "q35,smm=on", "-global", "driver=cfi.pflash01,property=secure,value=on", "-cpu", "Nehalem")
 ANEW, UNLOCKED = "gopura: /dev/vda6 cannot be unlocked and is created anew, encrypted", "gopura: /dev/vda6 is unlocked"
 NO_TPM = "gopura: /dev/vda6 is NOT encrypted: The computer has no TPM"
+LOCKED = "gopura: nothing is stored: /dev/vda6 cannot be unlocked. The computer has no TPM"
+WARNINGS = {NO_TPM: "The data partition is not encrypted", LOCKED: "Nothing is stored on the disk"}  # of the health page
 IDENTITY = r"cat\[\d+\]: ([0-9a-f]{32})\s"  # the machine's, which is on the data partition (lib-image.sh)
 # What SQLite, the journal and e2fsprogs write at the beginning of their files.
 PLAIN = {"a database": b"SQLite format 3\0", "the journal": b"LPKSHHRH", "the file system's name": b"gopura-data"}
@@ -56,11 +58,6 @@ class Terminal(Machine):
         return self.wait_for(what, BOOT_S, lambda: re.search(what, self.log()))
 
 
-def warned(machine):
-    """Whether the health page warns of data that is not encrypted."""
-    return "The data partition is not encrypted" in asked(machine.health, "/health")
-
-
 def start(work, case, tpm, expected, unexpected, until=IDENTITY):
     """Starts the terminal until it has said what is expected, and the pattern `until`. Returns the machine's id."""
     began = time.monotonic()
@@ -70,8 +67,8 @@ def start(work, case, tpm, expected, unexpected, until=IDENTITY):
             machine.said(re.escape(what))
         identity = machine.said(IDENTITY).group(1)
         machine.said(until)
-        if not tpm:
-            machine.wait_for("warning on the health page", ANSWER_S, lambda: warned(machine))
+        for warning in (WARNINGS[what] for what in expected if what in WARNINGS):
+            machine.wait_for("warning on the health page", ANSWER_S, lambda: warning in asked(machine.health, "/health"))
         for what in unexpected:
             if what in machine.log():
                 raise SystemExit(f"{case}: the terminal said '{what}':\n" + machine.log()[-3000:])
@@ -169,7 +166,11 @@ def main():
     os.truncate(f"{work}/disk.img", DISK_BYTES)
     shutil.copy(f"{FIRMWARE}/OVMF_VARS_4M.fd", f"{work}/variables.img")
 
+    zero = start(work, "no TPM", None, [NO_TPM], [UNLOCKED, LOCKED], "app: first picture")
+    if sorted(readable(work)) != sorted(PLAIN):
+        raise SystemExit(f"of a plain partition can be read only: {readable(work)}")  # so it proves nothing that the encrypted one hides it
     one = first(work)
+    same("encrypted", zero, one, False)
     same("the second start", one, start(work, "second", "tpm", [UNLOCKED], [ANEW, NO_TPM]), True)
     update(work, image)
     same("an update to another kernel", one, start(work, "another kernel", "tpm", ["gopura: starting slot b", UNLOCKED], [ANEW, NO_TPM]), True)
@@ -185,11 +186,8 @@ def main():
     same("with Secure Boot", two, three, False)
     four = start(work, "a new TPM", "new-tpm", [ANEW, UNLOCKED], [NO_TPM])
     same("with a new TPM", three, four, False)
-    five = start(work, "no TPM", None, [NO_TPM], [UNLOCKED], "app: first picture")
-    same("without a TPM", four, five, False)
-    if sorted(readable(work)) != sorted(PLAIN):
-        raise SystemExit(f"of a plain partition can be read only: {readable(work)}")  # so it proves nothing that the encrypted one hides it
-    same("with a TPM again", five, start(work, "a TPM again", "new-tpm", [ANEW, UNLOCKED], [NO_TPM]), False)
+    same("without its TPM", four, start(work, "the TPM switched off", None, [LOCKED], [ANEW, UNLOCKED, NO_TPM], "app: first picture"), False)
+    same("with its TPM again", four, start(work, "the TPM switched on again", "new-tpm", [UNLOCKED], [ANEW, NO_TPM]), True)
 
 
 main()
