@@ -99,7 +99,7 @@ if [ "${1:-}" = lane ]; then
 fi
 
 # Campaigns, which take long or of which the other tests take a sample, are in targets of make alone; "only" runs one here too.
-campaigns='qemu/powercut qemu/raspberry_pi qemu/tpm'
+campaigns='qemu/powercut qemu/raspberry_pi qemu/tpm qemu/worn'
 scripts() { find tests/e2e tests/qemu -name '*.sh' ! -name 'lib*.sh' ! -name 'make-*.sh' | sed 's/^tests\///; s/\.sh$//' | sort; }
 
 mode=${1:-all}
@@ -145,7 +145,7 @@ if [ "$mode" = all ]; then
 	# The tests of one line run one after another, because each uses what those before it made. There is one lane for
 	# each core for tests that compute, the longest first. Tests that mostly wait run beside them in as many lanes
 	# again. An end-to-end test waits until the release that it uses is made.
-	computes=$(printf '%s\n' 'qemu/kiosk qemu/image qemu/worn qemu/disks qemu/loader' release-small units e2e/golden \
+	computes=$(printf '%s\n' 'qemu/kiosk qemu/image qemu/disks qemu/loader' release-small units e2e/golden \
 		qemu/arm64 e2e/weak e2e/pictures e2e/monkey e2e/tours e2e/tools e2e/scans e2e/visitor e2e/back)
 	lanes() { xargs -P "$1" -L 1 tests/run.sh lane; }
 	lanes "$jobs" <<<"$computes" &
