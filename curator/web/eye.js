@@ -22,7 +22,12 @@ export class Eye {
   connect() {
     this.socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket?token=${token()}`);
     this.socket.binaryType = "arraybuffer";
-    this.socket.onmessage = event => typeof event.data === "string" ? this.on.text(JSON.parse(event.data)) : this.show(event.data);
+    this.socket.onmessage = event => {
+      if (typeof event.data !== "string") { this.show(event.data); return; }
+      const message = JSON.parse(event.data);
+      if (message.type === "error") message.message = message.message[0].toUpperCase() + message.message.slice(1);
+      this.on.text(message);
+    };
     this.socket.onclose = event => {
       this.on.closed(Boolean(this.camera), event.reason);
       // What is not saved yet stays with the role that it was begun with: the server judges when it is saved.

@@ -57,7 +57,7 @@ export class Player {
 
   step(now) {
     if (!this.last) return;
-    this.ms += Math.min(now - this.last, 250);
+    this.ms += Math.max(0, Math.min(now - this.last, 250)); // a frame may have begun before it was clicked
     this.last = now;
     this.pose();
     if (this.ms >= this.flight.duration_ms) { this.pause(); this.ms = 0; } else requestAnimationFrame(time => this.step(time));

@@ -86,6 +86,7 @@ async function plays(browser) {
   assert.match(await text(browser, "#said"), /mountain of stone/);
   await browser.sleep(600);
   await browser.picture(`${folder}/playing.png`);
+  assert.equal(await browser.evaluate(`document.querySelector("#message").hidden`), true, "nothing is wrong");
   await browser.click("#play");
   assert.equal(await text(browser, "#play"), "Play");
   const at = await browser.evaluate(`document.querySelector("#when").value`);
