@@ -36,6 +36,7 @@
 	FILE(information_style, "/information.css", "information.css", STYLE, true)                \
 	FILE(about, "/about.js", "about.js", SCRIPT, true)                                         \
 	FILE(clean, "/clean.js", "clean.js", SCRIPT, true)                                         \
+	FILE(drops, "/drops.js", "drops.js", SCRIPT, true)                                         \
 	FILE(editor, "/editor.js", "editor.js", SCRIPT, true)                                      \
 	FILE(eye, "/eye.js", "eye.js", SCRIPT, true)                                               \
 	FILE(history, "/history.js", "history.js", SCRIPT, true)                                   \

@@ -98,6 +98,8 @@ export function pageText() {
   return before ? `${before}\n${text}\n${after}` : `${text}\n`;
 }
 
+export const isEditable = () => editable;
+
 export function allowEditing(on) {
   editable = on;
   page.contentEditable = String(on);

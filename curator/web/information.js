@@ -3,15 +3,16 @@
 import { hasUnsavedCredit, showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
-import { clean, pictureAddress } from "./clean.js";
+import { pictureAddress } from "./clean.js";
 import { showDocuments } from "./documents.js";
+import { setUpDrops, takeDrop, takeFiles } from "./drops.js";
 import { allowEditing, hasOverlap, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
 import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
-import { makeFigure, pickPicture, readFigure, sendPicture, setPictures } from "./pictures.js";
+import { makeFigure, pickPicture, readFigure, setPictures } from "./pictures.js";
 import { showPreview } from "./preview.js";
 import { locate, showProblems } from "./problems.js";
-import { sendSound, showSound, soundKind } from "./sound.js";
+import { sendSound, showSound } from "./sound.js";
 
 const byId = id => document.getElementById(id);
 const FIELDS = ["title", "caption", "reading"];
@@ -345,46 +346,7 @@ function showPanel() {
   if (panel === "preview") showPreview(part, language, dirty && !shown ? pageText() : null);
 }
 
-// ---- files that are dropped, links, pictures
-
-// All of them belong to what is open when they are dropped.
-async function takeFiles(files) {
-  const id = part.id, code = language, which = shown;
-  for (const file of files) {
-    if (part.id !== id || language !== code || shown !== which) { tell(`${file.name} was not taken, because something else was opened meanwhile: drop it again.`); return; }
-    try {
-      if (soundKind(file)) {
-        await changeFiles(() => sendSound(soundKind(file), part, language, file));
-        continue;
-      }
-      if (/^image\//.test(file.type)) {
-        byId("state").textContent = `Sending ${file.name} …`;
-        const name = await sendPicture(file);
-        if (part.id !== id || language !== code || shown !== which) { tell(`${file.name} was sent, and can be chosen for any page: something else was opened meanwhile.`); return; }
-        insertBlocks(makeFigure({ name, alt: "", caption: "", credit: "" }));
-      } else if (/^text\/html/.test(file.type)) {
-        insertBlocks(clean(await file.text()));
-      } else if (/^text\//.test(file.type)) {
-        const text = await file.text(), box = document.createElement("div");
-        for (const lines of text.split(/\n\s*\n/)) box.append(Object.assign(document.createElement("p"), { textContent: lines }));
-        insertBlocks(clean(box.innerHTML));
-      } else tell(`${file.name}: pictures (JPEG, PNG, WebP), texts, web pages and speech (Opus, WebVTT) can be taken.`);
-    } catch (failure) {
-      tell(`${file.name}: ${failure.message}`);
-    }
-  }
-  edited();
-}
-
-function takeDrop(data) {
-  if (data.files.length) return takeFiles([...data.files]);
-  const html = data.getData("text/html"), address = data.getData("text/uri-list");
-  if (html) insertBlocks(clean(html));
-  else if (address) insertBlocks(clean(`<p>${address.replace(/[&<]/g, c => c === "&" ? "&amp;" : "&lt;")}</p>`)); // the kiosk shows nothing outside the release
-  else return Promise.resolve();
-  setDirty(true);
-  return Promise.resolve();
-}
+// ---- links, pictures
 
 function linkTargets() {
   const names = list => list.map(one => [one.id, titleOf(one, [language, ...information.languages])]);
@@ -410,6 +372,13 @@ function openFigure(figure) {
 
 const edited = () => setDirty(pageText() !== loadedText || FIELDS.some(name => byId(name).value.trim() !== loaded[name]));
 
+setUpDrops({
+  opened: () => `${part.id} ${language} ${shown}`,
+  sound: (kind, file) => changeFiles(() => sendSound(kind, part, language, file)),
+  tell,
+  state: words => { byId("state").textContent = words; },
+  edited,
+});
 setUpEditor(edited, setUpLinks(linkTargets), openFigure, takeFiles);
 setUpList(id => open(id), async (id, before) => {
   try {

@@ -292,6 +292,21 @@ async function leavesWhatItCannotShow(browser) {
   })()`), [[], false, false]);
 }
 
+// What is dropped comes to the page, but not to one that cannot be edited.
+async function takesADrop(browser) {
+  const drop = `(() => { const data = new DataTransfer(); data.items.add(new File(["Dropped.\\n\\nTwice."], "words.txt", { type: "text/plain" })); document.querySelector("#page").dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true })); })()`;
+  await open(browser, "naga.en");
+  await browser.evaluate(drop);
+  await browser.until(`/Dropped\\.\\s*Twice\\./.test(document.querySelector("#page").innerText)`, "the text");
+  await browser.click("#save");
+  await saved(browser);
+  assert.match(await html(browser, "naga"), /<p>Dropped\.<\/p>\s*<p>Twice\.<\/p>/);
+  await browser.evaluate(`import("/editor.js").then(editor => editor.allowEditing(false))`);
+  await browser.evaluate(drop);
+  await browser.until(`/cannot be edited/.test(document.querySelector("#message").textContent)`, "why not");
+  assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true);
+}
+
 // Two credits one after the other, without waiting for the first to be saved; then one that somebody else has changed.
 async function writesCredits(browser) {
   await open(browser, "lions.en");
@@ -334,6 +349,7 @@ try {
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);
+  await takesADrop(ana);
   await previews(ana);
   await ana.picture(`${folder}/writing.png`);
   await petra.picture(`${folder}/tablet.png`);
