@@ -17,6 +17,7 @@
 
 enum {
 	LOG_BYTES_MAX = 64 << 20,
+	DISK_PERCENT = 60, /* of the file system, at most */
 	TOUCH_S = 600, /* minimum time between two rank updates of an object: each costs a write */
 	EVICT_TRIES = 8,
 	KEPT_NOW = 1, /* bits of keeps.releases */
@@ -50,24 +51,29 @@ static sqlite3_stmt *bound_to_hash(struct cache *cache, enum statement which,
 	return statement;
 }
 
-/* Returns the budget asked for, within what the file system can give: the state, the journal and
- * others are on it too. */
+uint64_t cache_budget_in(const char *folder, uint64_t budget_bytes)
+{
+	struct statvfs disk;
+	uint64_t most;
+
+	if (statvfs(folder, &disk) == 0) {
+		/* The state, the journal and others are on the file system too. */
+		most = (uint64_t)disk.f_blocks * disk.f_frsize / 100 * DISK_PERCENT;
+		if (budget_bytes > most)
+			budget_bytes = most;
+	}
+	return budget_bytes < CACHE_BUDGET_MIN ? CACHE_BUDGET_MIN : budget_bytes;
+}
+
 static uint64_t budget_of(const struct cache_options *options)
 {
 	const char *slash = strrchr(options->path, '/');
 	char folder[PATH_MAX] = ".";
-	uint64_t budget = options->budget_bytes, most;
-	struct statvfs disk;
 
 	if (slash)
 		snprintf(folder, sizeof(folder), "%.*s", (int)(slash - options->path + 1),
 			 options->path);
-	if (statvfs(folder, &disk) == 0) {
-		most = (uint64_t)disk.f_blocks * disk.f_frsize / 100 * CACHE_DISK_PERCENT;
-		if (budget > most)
-			budget = most;
-	}
-	return budget < CACHE_BUDGET_MIN ? CACHE_BUDGET_MIN : budget;
+	return cache_budget_in(folder, options->budget_bytes);
 }
 
 int cache_create(struct cache **out, const struct cache_options *options)

@@ -18,10 +18,7 @@
 
 struct cache; /* private to cache*.c */
 
-enum {
-	CACHE_BUDGET_MIN = 4 << 20, /* bytes; a smaller budget is raised to this */
-	CACHE_DISK_PERCENT = 60,    /* of the file system; a larger budget is lowered to this */
-};
+enum { CACHE_BUDGET_MIN = 4 << 20 /* bytes; a smaller budget is raised to this */ };
 
 struct cache_options {
 	const char *path;      /* copied; its folder must exist */
@@ -75,6 +72,8 @@ must_check int cache_sync(struct cache *cache);
 /* Returns true if writes are waiting for a commit. */
 bool cache_needs_flush(const struct cache *cache);
 
+/* Returns the budget that a cache in a folder keeps to: at most 60 % of the file system. */
+uint64_t cache_budget_in(const char *folder, uint64_t budget_bytes);
 uint64_t cache_budget_bytes(const struct cache *cache);   /* the one that is kept */
 uint64_t cache_refused_writes(const struct cache *cache); /* since cache_create */
 uint64_t cache_file_bytes(const struct cache *cache);     /* current size of PATH and PATH-wal */

@@ -285,12 +285,10 @@ static int write_probe(const char *folder)
 
 /* Returns the free space that the state folder still needs, in MiB. The cache counts only if this
  * kiosk starts the fetcher, less what it already occupies. */
-static uint64_t room_needed_mib(const struct self_test *test, const struct statvfs *disk)
+static uint64_t room_needed_mib(const struct self_test *test)
 {
-	const uint64_t most_mib =
-		(uint64_t)disk->f_blocks * disk->f_frsize / 100 * CACHE_DISK_PERCENT >> 20;
 	const uint64_t cache_mib =
-		test->profile.cache_mib < most_mib ? test->profile.cache_mib : most_mib;
+		cache_budget_in(test->folder, (uint64_t)test->profile.cache_mib << 20) >> 20;
 	char path[PATH_MAX + 16];
 	struct stat cache;
 	uint64_t has_mib = 0;
@@ -322,7 +320,7 @@ static void check_storage(struct self_test *test)
 		return;
 	}
 	free_mib = (uint64_t)disk.f_bavail * disk.f_frsize >> 20;
-	needed_mib = room_needed_mib(test, &disk);
+	needed_mib = room_needed_mib(test);
 	if (free_mib < needed_mib)
 		say(test, false, "storage",
 		    "%s: %" PRIu64 " MiB free, %" PRIu64
