@@ -174,25 +174,30 @@ static int renew_release(struct publish_report *report, const struct publish_tar
 	return rc;
 }
 
-int publish_renew(struct publish_report *report, const struct publish_target *target)
+/* publish_renew, of this release. */
+static int renew(struct publish_report *report, const struct publish_target *target,
+		 const struct release *current)
 {
 	const int64_t life_s = life_or(target->release_life_s, RELEASE_LIFE_DAYS);
 	int64_t expires_s;
-	int rc = published_current(target, &report->release);
+	int rc = published_expires_s(target, current, &expires_s);
 
+	report->release = *current;
 	report->changed = false;
-	if (rc == 0)
-		rc = published_check_clock(target);
-	if (rc == 0)
-		rc = published_expires_s(target, &report->release, &expires_s);
 	if (rc < 0)
 		return rc;
-	if (expires_s - clock_wall_s() < life_s / 5 * 2) {
-		const struct release current = report->release;
+	return expires_s - clock_wall_s() < life_s / 5 * 2 ? renew_release(report, target, current)
+							   : renew_timestamp(target, current);
+}
 
-		return renew_release(report, target, &current);
-	}
-	return renew_timestamp(target, &report->release);
+int publish_renew(struct publish_report *report, const struct publish_target *target)
+{
+	struct release current;
+	int rc = published_check_clock(target);
+
+	if (rc == 0)
+		rc = published_current(target, &current);
+	return rc < 0 ? rc : renew(report, target, &current);
 }
 
 static int make_root(struct page_child *out, struct object_store *objects,
@@ -287,7 +292,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 	if (rc < 0)
 		return rc;
 	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
-		return publish_renew(report, target);
+		return renew(report, target, &before);
 	return sign(report, target, &page, published_next(target, before.sequence));
 }
 

@@ -37,8 +37,8 @@ struct publish_report {
 
 /* Publishes a release. children: the pages of hierarchy, samples, information and, if there are
  * any, labels, and what root->has_solid and root->has_stream announce; objects holds them and
- * everything below them. If nothing changed and there is no new comment, what runs
- * out is renewed: publish_renew. Errors are logged. */
+ * everything below them. If nothing changed and there is no new comment, what runs out is renewed:
+ * publish_renew. Errors are logged. */
 must_check int publish_parts(struct publish_report *report, const struct publish_target *target,
 			     struct object_store *objects, const struct root_page *root,
 			     const struct page_child *children, uint32_t child_count);

@@ -24,9 +24,7 @@ struct tuf_place published_place(const struct publish_target *target)
 				   .role = target->tuf_role };
 }
 
-/* -ENOENT, that there is no root or role, is logged, and not the same as that nothing was
- * published.
- */
+/* -ENOKEY: there is no root or role, which is logged, and not the same as nothing published. */
 static int open_folder(struct tuf_folder *out, const struct tuf_place *place)
 {
 	const int rc = tuf_folder_open(out, place);
