@@ -72,14 +72,15 @@ static void read_slot(struct machine *out, const char *root)
 /* Compares the version floor, "SEQUENCE VERSION", with the running system. */
 static void read_newer(struct machine *out, const char *root)
 {
-	char text[4096], format[32];
+	char text[4096];
 	double sequence, running;
+
+	_Static_assert(sizeof(out->newer) == 64, "the format has its length");
 
 	read_text(text, sizeof(text), root, "/etc/os-release");
 	running = number_after(text, "\nIMAGE_SEQUENCE=");
 	read_text(text, sizeof(text), root, "/var/lib/gopura-firmware/floor");
-	snprintf(format, sizeof(format), "%%lf %%%zus", sizeof(out->newer) - 1);
-	if (sscanf(text, format, &sequence, out->newer) != 2 || !(sequence > running))
+	if (sscanf(text, "%lf %63s", &sequence, out->newer) != 2 || !(sequence > running))
 		out->newer[0] = '\0';
 }
 

@@ -1,3 +1,4 @@
+/* Reads the errors that OpenSSL has noted on this thread. */
 #include "tuf/openssl_memory.h"
 
 #include <openssl/err.h>

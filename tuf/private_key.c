@@ -74,6 +74,7 @@ static int try_to_sign(uint8_t signature[SIGNATURE_BYTES_MAX], size_t *size, str
 	EVP_PKEY *key = read_key(pem);
 	int rc = 0;
 
+	*size = SIGNATURE_BYTES_MAX;
 	if (!key)
 		rc = -EBADMSG;
 	else if (!is_usable(key))
@@ -87,13 +88,11 @@ static int try_to_sign(uint8_t signature[SIGNATURE_BYTES_MAX], size_t *size, str
 int tuf_private_sign(struct buffer *out, struct bytes pem, struct bytes message)
 {
 	uint8_t signature[SIGNATURE_BYTES_MAX];
-	size_t size = sizeof(signature);
+	size_t size;
 	int rc = try_to_sign(signature, &size, pem, message);
 
-	if (rc < 0 && rc != -ENOMEM) { /* once more: tuf/openssl_memory.h */
-		size = sizeof(signature);
+	if (rc < 0 && rc != -ENOMEM) /* once more: tuf/openssl_memory.h */
 		rc = try_to_sign(signature, &size, pem, message);
-	}
 	if (rc == 0)
 		buffer_put(out, signature, size);
 	return rc < 0 ? rc : out->error;

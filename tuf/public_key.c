@@ -27,7 +27,9 @@ static int try_to_read_pem(EVP_PKEY **out, struct bytes file)
 
 	*out = bio ? PEM_read_bio_PUBKEY(bio, NULL, NULL, NULL) : NULL;
 	BIO_free(bio);
-	return openssl_lacked_memory() && !*out ? -ENOMEM : *out ? 0 : -EBADMSG;
+	if (openssl_lacked_memory() && !*out)
+		return -ENOMEM;
+	return *out ? 0 : -EBADMSG;
 }
 
 static int read_pem(EVP_PKEY **out, struct bytes file)

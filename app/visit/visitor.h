@@ -40,8 +40,7 @@ struct visitor {
 	uint32_t down;              /* bit mask of contacts that are on the glass */
 	uint32_t answers;           /* bit mask of contacts that only answered the question */
 	struct attract_camera attract;
-	bool circles; /* the attract camera is that of this release, and began since the last visit
-		       */
+	bool circles;             /* the attract camera, around this release */
 	int64_t attract_since_ms; /* when the attract camera began, or will begin */
 };
 

@@ -33,7 +33,7 @@ struct publisher {
 	const struct publisher_options *options;
 	int stop_fd, notice_fd, lock_fd;
 	bool stopped;
-	int64_t renew_ms; /* by clock_now_ms, after a renewal that failed; 0: it did not */
+	int64_t renew_ms; /* of the next renewal after one that failed; 0: the log tells */
 	/* What temple.ini said when it had no faults last: whose releases are the folder's. */
 	bool knows_place;
 	char target[CONTENT_TARGET_BYTES], role[CONTENT_ROLE_BYTES];

@@ -33,9 +33,10 @@ static int from_git(int code, const char *doing)
 		return -ENOMEM;
 	/* Of what the system said, libgit2 keeps the words alone. */
 	if (error && error->klass == GIT_ERROR_OS)
-		return strstr(error->message, strerror(ENOSPC))   ? -ENOSPC
-		       : strstr(error->message, strerror(EDQUOT)) ? -ENOSPC
-								  : -EIO;
+		return strstr(error->message, strerror(ENOSPC)) ||
+				       strstr(error->message, strerror(EDQUOT))
+			       ? -ENOSPC
+			       : -EIO;
 	return -EBADMSG;
 }
 
