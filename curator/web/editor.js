@@ -73,8 +73,8 @@ function showOverlaps(marked) {
   page.replaceChildren(...out.childNodes);
 }
 
-// Whether somebody still has to decide between two texts.
-export const hasOverlap = () => Boolean(page.querySelector("[data-overlap]"));
+// The first place where somebody still has to decide between two texts, or null.
+export const firstOverlap = () => page.querySelector("[data-overlap]");
 
 // Returns whether all of it is shown, and would be there again in what pageText() gives. A text that two wrote at once has
 // marks of a merge.
@@ -84,7 +84,7 @@ export function setPage(html) {
   after = tail;
   if (/^<{7} /m.test(body)) {
     showOverlaps(body);
-    page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+    firstOverlap().scrollIntoView({ block: "center" });
     return true;
   }
   page.replaceChildren(...named(clean(body)).childNodes);

@@ -6,7 +6,7 @@ import { ask, loadSession, may } from "./api.js";
 import { pictureAddress } from "./clean.js";
 import { showDocuments } from "./documents.js";
 import { setUpDrops, takeDrop, takeFiles } from "./drops.js";
-import { allowEditing, hasOverlap, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
+import { allowEditing, firstOverlap, insertBlocks, pageText, setPage, setUpEditor, setUpLinks } from "./editor.js";
 import { showHistory } from "./history.js";
 import { setUpList, showList, titleOf } from "./part_list.js";
 import { makeFigure, pickPicture, readFigure, setPictures } from "./pictures.js";
@@ -104,7 +104,7 @@ async function open(id, code = language, again = false) {
   const other = part?.id !== id || code !== language;
   if ((!other && isLoaded && !again) || !await mayLeave()) return;
   if (part?.id !== id) shown = "";
-  part = information.parts.find(one => one.id === id);
+  part = information.parts.find(one => one.id === id) || part; // which somebody else may have removed
   language = code;
   byId("nothing").hidden = true;
   byId("work").hidden = false;
@@ -220,8 +220,8 @@ async function savePage() {
 function meet(theirs) {
   tag = theirs.tag;
   if (theirs.html) setPage(theirs.html);
-  loadedText = hasOverlap() || !theirs.html ? "" : pageText();
-  tell(hasOverlap() ? "Somebody else has changed the same paragraph meanwhile. Both texts are on the page, blue and green: keep one, or make one of both, and save again."
+  loadedText = firstOverlap() || !theirs.html ? "" : pageText();
+  tell(firstOverlap() ? "Somebody else has changed the same paragraph meanwhile. Both texts are on the page, blue and green: keep one, or make one of both, and save again."
     : `Not saved: ${theirs.message}.`);
   byId("message").scrollIntoView({ block: "center" });
 }
@@ -235,9 +235,9 @@ function fail(failure) {
 
 // What is written meanwhile is not saved with it, and stays.
 async function saveAll() {
-  if (hasOverlap()) {
+  if (firstOverlap()) {
     tell("Not saved: both texts of a paragraph are still on the page, blue and green. Keep one of them first.");
-    page.querySelector("[data-overlap]").scrollIntoView({ block: "center" });
+    firstOverlap().scrollIntoView({ block: "center" });
     return;
   }
   byId("save").disabled = true;

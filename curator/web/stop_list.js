@@ -1,4 +1,6 @@
 // The stops of a tour: choosing one, their order, and the form of the chosen one.
+import { may } from "./api.js";
+
 const list = document.getElementById("stops");
 let dragged = -1;
 
@@ -12,8 +14,8 @@ function labelled(words, help, field) {
   return element("label", {}, words, " ", element("small", { textContent: help }), field);
 }
 
-function seconds(stop, key, usual, { changed, edits }) {
-  const field = element("input", { type: "number", min: key === "stay" ? 0 : 1, max: 120, step: "any", value: stop[key] ?? "", placeholder: usual, readOnly: !edits });
+function seconds(stop, key, usual, changed) {
+  const field = element("input", { type: "number", min: key === "stay" ? 0 : 1, max: 120, step: "any", value: stop[key] ?? "", placeholder: usual, readOnly: !may("editor") });
   field.dataset.key = key;
   field.addEventListener("input", () => {
     if (field.value === "") delete stop[key];
@@ -24,7 +26,7 @@ function seconds(stop, key, usual, { changed, edits }) {
 }
 
 function form(stop, n, tour, context) {
-  const words = element("textarea", { rows: 3, maxLength: 2000, value: stop.caption?.[context.language] || "", lang: context.language, dir: "auto", readOnly: !context.edits });
+  const words = element("textarea", { rows: 3, maxLength: 2000, value: stop.caption?.[context.language] || "", lang: context.language, dir: "auto", readOnly: !may("editor") });
   words.dataset.key = "caption";
   words.addEventListener("input", () => {
     stop.caption = { ...stop.caption, [context.language]: words.value };
@@ -32,7 +34,7 @@ function form(stop, n, tour, context) {
     if (!Object.keys(stop.caption).length) delete stop.caption;
     context.changed(false);
   });
-  const part = element("select", { disabled: !context.edits }, new Option("none", ""), ...context.parts.map(one => new Option(one.title, one.id)));
+  const part = element("select", { disabled: !may("editor") }, new Option("none", ""), ...context.parts.map(one => new Option(one.title, one.id)));
   part.dataset.key = "part";
   part.value = stop.part || "";
   part.addEventListener("change", () => {
@@ -41,7 +43,7 @@ function form(stop, n, tour, context) {
     context.changed();
   });
   const button = (textContent, action, title, className = "") => {
-    const made = element("button", { type: "button", textContent, title, className, disabled: !context.edits && action !== context.look });
+    const made = element("button", { type: "button", textContent, title, className, disabled: !may("editor") && action !== context.look });
     made.addEventListener("click", () => action(n));
     return made;
   };
@@ -49,8 +51,8 @@ function form(stop, n, tour, context) {
     labelled("What is said", context.languageName, words),
     labelled("Part", "shown while it stays", part),
     element("div", { className: "times" },
-      labelled("Stays", "seconds; 0: passes", seconds(stop, "stay", "6", context)),
-      labelled("Flight to it", "seconds", seconds(stop, "travel", "by its length", context))),
+      labelled("Stays", "seconds; 0: passes", seconds(stop, "stay", "6", context.changed)),
+      labelled("Flight to it", "seconds", seconds(stop, "travel", "by its length", context.changed))),
     element("div", { className: "line" },
       button("Look from here", context.look, "Bring the eye to this stop"),
       button("Set to this view", context.set, "This stop gets the present eye"),
@@ -70,10 +72,10 @@ function row(stop, n, tour, context) {
     if (!step) return;
     event.preventDefault();
     const to = Math.max(0, Math.min(last, n + step));
-    if (event.altKey && context.edits) context.move(n, to);
+    if (event.altKey && may("editor")) context.move(n, to);
     else document.getElementById(`stop-${to}`).focus();
   });
-  button.draggable = context.edits;
+  button.draggable = may("editor");
   button.addEventListener("dragstart", event => { dragged = n; event.dataTransfer.setData("text/x-stop", String(n)); event.dataTransfer.effectAllowed = "move"; });
   button.addEventListener("dragend", () => { dragged = -1; });
   item.addEventListener("dragover", event => {
@@ -92,7 +94,7 @@ function row(stop, n, tour, context) {
   return item;
 }
 
-// context: chosen, language, languageName, parts ({id, title}), edits (may), and what is done: changed(flies), choose(n),
+// context: chosen, language, languageName, parts ({id, title}), and what is done: changed(flies), choose(n),
 // move(from, to), look(n), set(n), remove(n). Who is typing goes on typing, at the same place.
 export function showStops(tour, context) {
   const { id, dataset, selectionStart, selectionEnd } = document.activeElement, isHere = list.contains(document.activeElement);

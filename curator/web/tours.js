@@ -12,7 +12,6 @@ const byId = id => document.getElementById(id);
 const TOURS_MAX = 8, STOPS_MAX = 64, FLIGHT_MS = 500;
 let information, tours = [], tour = null, language = "", chosen = -1, dirty = false, saving = false;
 let wanted = false;                     // to save again, once the save that is under way has ended
-let edits = false;                      // whether the role allowed it when the page was loaded
 let stored = "[]", tag = "", sent = ""; // the tours as they are in the file, its tag, and as they were sent last
 let clashes = [];                       // ids of tours that somebody else has changed too, in another way
 let gone = "";                          // why there is no model
@@ -21,8 +20,8 @@ let flightTimer, asked = 0;             // for the path of the tour as it is in 
 const titleOf = one => information.languages.map(code => one.title?.[code]).find(Boolean) || one.id;
 const round = numbers => numbers.map(number => Math.round(number * 1000) / 1000);
 
-function tell(text, good = false, ...more) {
-  byId("message").replaceChildren(text, ...more);
+function tell(text, good = false) {
+  byId("message").textContent = text;
   byId("message").hidden = !text;
   byId("message").classList.toggle("good", good);
 }
@@ -34,7 +33,7 @@ function showState(words) {
 
 function setDirty(on) {
   dirty = on;
-  byId("save").disabled = !on || !edits;
+  byId("save").disabled = !on || !may("editor");
   showState(on ? "Not saved yet" : "");
 }
 
@@ -42,7 +41,7 @@ function setDirty(on) {
 
 const eye = new Eye(byId("stage"), [byId("picture")], byId("quality"), {
   text: message => {
-    if (message.type === "hello") { eye.begin(message); byId("keep").disabled = !tour || !edits; if (tour) look(0); }
+    if (message.type === "hello") { eye.begin(message); byId("keep").disabled = !tour || !may("editor"); if (tour) look(0); }
     else if (message.type === "point" && message.at) eye.lookAt(message.at);
     else if (message.type === "error") tell(message.message);
   },
@@ -111,7 +110,7 @@ function showTours() {
     return item;
   }));
   byId("attract").checked = tour?.attract === true;
-  byId("new-tour").disabled = !edits || tours.length >= TOURS_MAX;
+  byId("new-tour").disabled = !may("editor") || tours.length >= TOURS_MAX;
 }
 
 function showLanguages() {
@@ -144,7 +143,7 @@ function show() {
   const is = Boolean(tour);
   byId("work").hidden = !is;
   byId("nothing").hidden = is;
-  byId("keep").disabled = !is || tour.scene || !eye.camera || !edits || tour.stops.length >= STOPS_MAX;
+  byId("keep").disabled = !is || tour.scene || !eye.camera || !may("editor") || tour.stops.length >= STOPS_MAX;
   showTours();
   if (!is) return;
   showLanguages();
@@ -154,7 +153,7 @@ function show() {
     byId(name).dir = "auto";
   }
   showStops(tour, {
-    chosen, edits, language, languageName: new Intl.DisplayNames([], { type: "language" }).of(language),
+    chosen, language, languageName: new Intl.DisplayNames([], { type: "language" }).of(language),
     parts: information.parts.map(part => ({ id: part.id, title: titleOf(part) })),
     changed, move, look,
     choose: n => { chosen = n; player.pause(); show(); byId(`stop-${n}`)?.focus(); if (n >= 0) look(n); },
@@ -257,7 +256,7 @@ async function put() {
 
 async function save() {
   wanted = saving;
-  if (saving || !dirty || !edits) return;
+  if (saving || !dirty || !may("editor")) return;
   saving = true;
   showState("Saving …");
   tell("");
@@ -281,12 +280,7 @@ async function save() {
 function fail(failure) {
   const problems = failure.answer?.problems;
   if (problems?.length) showProblems(problems, true);
-  if (failure.status === 401) {
-    const link = Object.assign(document.createElement("a"), { href: "/sign-in", target: "_blank", textContent: "Sign in in another window" });
-    tell("Not saved: you are not signed in any more. ", false, link, ", then save here again.");
-  } else {
-    tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
-  }
+  tell(problems?.length ? "Not saved: this cannot be published. See below." : `Not saved: ${failure.message}`);
   byId("message").scrollIntoView({ block: "center" });
 }
 
@@ -373,9 +367,8 @@ addEventListener("beforeunload", event => { if (dirty) event.preventDefault(); }
 loadSession().then(async session => {
   if (session.role === "nobody") { location.assign("/sign-in"); return; }
   showAccount(session);
-  edits = may("editor");
-  for (const name of ["title", "caption"]) byId(name).readOnly = !edits;
-  byId("attract").disabled = byId("remove").disabled = !edits;
+  for (const name of ["title", "caption"]) byId(name).readOnly = !may("editor");
+  byId("attract").disabled = byId("remove").disabled = !may("editor");
   information = await ask("GET", "/api/information");
   language = information.languages[0];
   byId("name").textContent = information.name;
