@@ -5,8 +5,7 @@
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
-command -v chromium >/dev/null || skip "chromium is not installed"
-command -v node >/dev/null || skip "node is not installed"
+. tests/e2e/lib-curator.sh
 work=build/e2e/reachable pictures=build/curator
 rm -rf "$work" "$pictures"/view-*.png
 mkdir -p "$work" "$pictures"
