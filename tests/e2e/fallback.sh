@@ -5,43 +5,21 @@
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
+. tests/e2e/lib-kiosk.sh
 command -v curl >/dev/null || skip "curl is not installed"
 work=build/e2e/fallback
-rm -rf "$work"
-mkdir -p "$work"
-small_release
-cp -a "$small/content" "$work/content"
-cp -a "$small/release" "$work/release"
+begin_release
 cp -a "$work/release" "$work/release1"
-pid= health=
+health=
 trap 'kill -9 $pid $health 2>/dev/null || true; stop_server' EXIT
 serve "$work/release" "$work/server"
 port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
 build/gopura-health --listen "127.0.0.1:$port" --kiosk "$work/kiosk" --fetch "$work/none" --data "$work" >"$work/health.log" 2>&1 &
 health=$!
 start_kiosk() { # LOG
-	log=$1
-	rm -f "$log"
-	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 --log debug \
-		--trust "$work/release1/root/1.json" --state "$work/state" --metrics "$work/kiosk" 2>"$log" &
-	pid=$!
+	run_kiosk "$1" --release "$url" --ca "$ca" --trust "$work/release1/root/1.json" --metrics "$work/kiosk"
 }
-says() { grep -qE "$1" "$log" 2>/dev/null; }
 health_says() { curl -s "http://127.0.0.1:$port$1" | grep -qE -- "$2"; }
-publish() { # WORD: another heading on each page
-	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
-}
-end_kiosk() {
-	kill "$pid"
-	wait "$pid" || fail "the kiosk did not end well"
-	pid=
-}
-prove() { # a release that was shown is seen to work ten seconds later, which is written down
-	touch "$work/since"
-	wait_for 30 "proof of the release" trial_is_over
-}
-trial_is_over() { [ -n "$(find "$work/state/state.db.second" -newer "$work/since")" ]; }
 root_of() { sed -n 's/^gopura_kiosk_release_info{root="\([0-9a-f]*\)".*/\1/p' <(curl -s "http://127.0.0.1:$port/metrics"); }
 # eye_is_at X: in metres
 eye_is_at() { grep 'app: eye at' "$log" | tail -n 1 | grep -q "eye at $1\\(\\.0*\\)\\? "; }

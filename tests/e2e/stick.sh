@@ -5,30 +5,12 @@
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
+. tests/e2e/lib-kiosk.sh
 work=build/e2e/stick
-rm -rf "$work"
-mkdir -p "$work/mount"
-small_release
-cp -a "$small/content" "$work/content"
-cp -a "$small/release" "$work/release"
-pid=
-trap '[ -z "$pid" ] || kill -9 "$pid" 2>/dev/null || true; stop_server' EXIT
+begin_release
+mkdir "$work/mount"
 start_kiosk() { # LOG URL OPTION...
-	log=$1
-	rm -f "$log"
-	build/gopura-kiosk --display headless --size 320x180 --release "$2" --stick "$work/mount" --poll-s 1 \
-		--log debug --trust "$small/release/root/1.json" --state "$work/state" "${@:3}" 2>"$log" &
-	pid=$!
-}
-end_kiosk() {
-	kill "$pid"
-	wait "$pid" || fail "the kiosk did not end well"
-	pid=
-}
-says() { grep -qE "$1" "$log" 2>/dev/null; }
-publish() {
-	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
+	run_kiosk "$1" --release "$2" --stick "$work/mount" --trust "$small/release/root/1.json" "${@:3}"
 }
 plug() { # RELEASE [BELOW]: whole at once, as a mount is: what is looked for comes last
 	local to=$work/mount${2:-}

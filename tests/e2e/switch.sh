@@ -4,42 +4,17 @@
 set -eu
 cd "$(dirname "$0")/../.."
 . tests/e2e/lib.sh
+. tests/e2e/lib-kiosk.sh
 work=build/e2e/switch
-rm -rf "$work"
-mkdir -p "$work"
-small_release
-cp -a "$small/content" "$work/content"
-cp -a "$small/release" "$work/release"
-pid=
-trap '[ -z "$pid" ] || kill -9 "$pid" 2>/dev/null || true; stop_server' EXIT
+begin_release
 serve "$work/release" "$work/server"
 start_kiosk() { # LOG OPTION...
-	log=$1
-	shift
-	rm -f "$log" # of the start before
-	build/gopura-kiosk --display headless --size 320x180 --release "$url" --ca "$ca" --poll-s 1 \
-		--log debug --idle-s 5 --trust "$work/release/root/1.json" --state "$work/state" "$@" 2>"$log" &
-	pid=$!
-}
-says() { grep -qE "$1" "$log" 2>/dev/null; }
-publish() { # WORD: another heading on each page
-	sed -i "s/<h1>/<h1>$1: /" "$work"/content/pages/*.en.html
-	build/gopura-content build "$work/content" --out "$work/release" --keys "$small_keys" >/dev/null
-}
-end_kiosk() {
-	kill "$pid"
-	wait "$pid" || fail "the kiosk did not end well"
-	pid=
+	run_kiosk "$1" --release "$url" --ca "$ca" --idle-s 5 --trust "$work/release/root/1.json" "${@:2}"
 }
 crash_kiosk() {
 	kill -9 "$pid"
 	wait "$pid" 2>/dev/null || true
 	pid=
-}
-trial_is_over() { [ -n "$(find "$work/state/state.db.second" -newer "$1")" ]; }
-prove() { # a release that was shown is seen to work ten seconds later, which is written down
-	touch "$work/since"
-	wait_for 30 "proof of the release" trial_is_over "$work/since"
 }
 
 # ---- a release that is signed and whole, and holds no patches
