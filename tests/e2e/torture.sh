@@ -37,7 +37,7 @@ printf '[terminal]\nname = east hall\n[release]\nurl = https://museum.example/te
 cp "$work/keys/root/1.json" "$work/"
 mkdir "$work/pillar"
 python3 tests/tools/leaning_pillar.py "$work/pillar" 0
-printf '[model]\nname = pillar\nscans = pillar.obj\n[grid]\npoints = 4\nface_px = 128\n[hierarchy]\nsurface = octree\ncell_mm = 100\n' >"$work/surface.ini"
+printf '[model]\nname = pillar\nscans = pillar.obj\n[grid]\npoints = 4\nface_px = 128\n[hierarchy]\nsurface = octree\ncell_mm = 200\n' >"$work/surface.ini"
 cp "$work/surface.ini" "$work/pillar/temple.ini"
 "$content" build "$work/pillar" --out "$work/reference-surface" --keys "$work/keys" --jobs 1 >"$work/log" 2>&1 || { cat "$work/log"; fail surface; }
 printf '[model]\nscans = pillar.obj\n' >"$work/pillar/temple.ini"
