@@ -296,9 +296,7 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	if (rc == 0)
 		rc = settle_colours(mesh, options, report);
 	if (rc < 0)
-		return diagnostics_add(diagnostics, rc, path, 0, "%s",
-				       rc == -ENOSPC ? "the disk has no room for the imported mesh"
-						     : "too large for this machine's memory");
+		return diagnostics_add(diagnostics, rc, path, 0, "%s", import_lack(rc));
 	if (mesh->triangle_count == 0)
 		return diagnostics_add(
 			diagnostics, -EBADMSG, path, 0,

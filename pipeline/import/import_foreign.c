@@ -495,11 +495,11 @@ static int run_job(struct mesh *out, struct job *job, struct parent *parent,
 	if (lseek(parent->result_fd, 0, SEEK_SET) < 0)
 		return diagnostics_add(diagnostics, -errno, parent->path, 0, "%s", strerror(errno));
 	rc = mesh_file_read(out, no_key, parent->result_fd);
-	if (rc < 0)
+	if (rc == -EBADMSG || rc == -ESTALE)
 		return diagnostics_add(diagnostics, rc, parent->path, 0,
-				       "its reader returned an invalid mesh: %s; export it again",
-				       strerror(-rc));
-	return 0;
+				       "its reader returned an invalid mesh; export it again");
+	return rc < 0 ? diagnostics_add(diagnostics, rc, parent->path, 0, "%s", import_lack(rc))
+		      : 0;
 }
 
 /* Copies only what the child fills in. The child is not trusted: a string may lack its end. */

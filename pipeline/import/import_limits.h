@@ -1,6 +1,10 @@
-/* How much memory and how many threads an import may use. Private to pipeline/import/import*.c. */
+/* How much memory and how many threads an import may use, and what it says if it lacks some.
+ * Private to pipeline/import/import*.c. */
 #ifndef GOPURA_PIPELINE_IMPORT_IMPORT_LIMITS_H
 #define GOPURA_PIPELINE_IMPORT_IMPORT_LIMITS_H
+
+#include <errno.h>
+#include <string.h>
 
 #include "base/bytes.h"
 #include "base/parallel.h"
@@ -17,6 +21,17 @@ static inline uint64_t import_memory_bytes(const struct import_options *options,
 static inline uint32_t import_jobs(const struct import_options *options)
 {
 	return options->jobs ? options->jobs : parallel_cores();
+}
+
+/* Returns what a failure that is no fault of the scan lacks, as a sentence. */
+static inline const char *import_lack(int rc)
+{
+	if (rc == -ENOMEM)
+		return "too large for this machine's memory";
+	if (rc == -ENOSPC)
+		return "the disk has no room for the imported mesh; make some, or set TMPDIR to a "
+		       "larger disk";
+	return strerror(-rc);
 }
 
 #endif

@@ -250,14 +250,10 @@ static int read_body(struct ply *ply, struct collector *collector, const char *p
 	if (rc == 0)
 		rc = load_textures(collector, path, options, report, diagnostics);
 	if (rc < 0)
-		return diagnostics_add(
-			diagnostics, rc, path, 0, "%s",
-			rc == -ENOMEM ? "too large for this machine's memory"
-			: rc == -ENOSPC
-				? "the disk has no room for the imported mesh; make some, or set TMPDIR to "
-				  "a larger disk"
-			: rc == -EFBIG ? "too many triangles; split it into several files"
-				       : strerror(-rc));
+		return diagnostics_add(diagnostics, rc, path, 0, "%s",
+				       rc == -EFBIG
+					       ? "too many triangles; split it into several files"
+					       : import_lack(rc));
 	return 0;
 }
 

@@ -28,6 +28,7 @@ enum {
 	ALIGNMENT = 8,         /* of each array in the file */
 	HEAD_BYTES_MAX = 1 << 20,
 	CHECKED_TRIANGLES = 1 << 16, /* by one thread at a time */
+	COPIED_BYTES = 16 << 20,     /* read at a time */
 };
 
 static const char magic[8] = { 'g', 'o', 'p', 'm', 'e', 's', 'h', 4 };
@@ -319,17 +320,19 @@ int mesh_file_move(struct mesh *mesh, struct hash key, const char *path)
 struct stream {
 	int fd;
 	int error;
+	bool maps;              /* large arrays are the file, and read only; else copies */
 	uint64_t from, at, end; /* offsets: of the mesh, of the next byte, of the file's end */
 };
 
-static int stream_init(struct stream *stream, int fd)
+static int stream_init(struct stream *stream, int fd, bool maps)
 {
 	struct stat status;
 	off_t at = lseek(fd, 0, SEEK_CUR);
 
 	if (at < 0 || fstat(fd, &status) < 0)
 		return -errno;
-	*stream = (struct stream){ .fd = fd, .from = (uint64_t)at, .at = (uint64_t)at };
+	*stream =
+		(struct stream){ .fd = fd, .maps = maps, .from = (uint64_t)at, .at = (uint64_t)at };
 	stream->end = status.st_size < at ? stream->at : (uint64_t)status.st_size;
 	return 0;
 }
@@ -368,10 +371,28 @@ static int read_textures_sizes(struct stream *stream, struct mesh *mesh, int64_t
 	return 0;
 }
 
-/* Maps bytes of the file at *offset to *out, and moves *offset behind them. */
-static int map_array(int fd, uint64_t *offset, void **out, size_t bytes)
+/* Returns NULL with errno on failure. */
+static void *copy_array(int fd, uint64_t offset, size_t bytes)
 {
-	*out = spill_map(fd, *offset, bytes);
+	uint8_t *copy = spill_alloc(bytes);
+	int rc = copy ? 0 : -errno;
+
+	for (size_t at = 0, size; rc == 0 && at < bytes; at += size) {
+		size = bytes - at < COPIED_BYTES ? bytes - at : COPIED_BYTES;
+		rc = bytes_read_at(fd, copy + at, size, offset + at);
+		spill_breathe();
+	}
+	if (rc == 0)
+		return copy;
+	spill_free(copy);
+	errno = -rc;
+	return NULL;
+}
+
+/* Takes bytes of the file at *offset as *out, and moves *offset behind them. */
+static int read_array(const struct stream *stream, uint64_t *offset, void **out, size_t bytes)
+{
+	*out = (stream->maps ? spill_map : copy_array)(stream->fd, *offset, bytes);
 	*offset += padded(bytes);
 	return *out ? 0 : -errno;
 }
@@ -389,10 +410,10 @@ static int read_arrays(struct stream *stream, struct mesh *mesh, uint32_t flags,
 		return -EBADMSG;
 	for (int i = 0; i < SECTIONS && rc == 0; i++)
 		if (sections[i].bytes > 0 || i == 0 || i == 3)
-			rc = map_array(stream->fd, &offset, sections[i].data, sections[i].bytes);
+			rc = read_array(stream, &offset, sections[i].data, sections[i].bytes);
 	for (uint32_t i = 0; i < mesh->texture_count && rc == 0; i++)
-		rc = map_array(stream->fd, &offset, (void **)&mesh->textures[i].rgb,
-			       texture_bytes(&mesh->textures[i]));
+		rc = read_array(stream, &offset, (void **)&mesh->textures[i].rgb,
+				texture_bytes(&mesh->textures[i]));
 	stream->at = offset;
 	return rc;
 }
@@ -538,10 +559,10 @@ static int read_body(struct stream *stream, struct mesh *mesh, struct hash key)
 	return rc == 0 && !is_sound(mesh) ? -EBADMSG : rc;
 }
 
-int mesh_file_read(struct mesh *out, struct hash key, int fd)
+static int read_mesh(struct mesh *out, struct hash key, int fd, bool maps)
 {
 	struct stream stream;
-	int rc = stream_init(&stream, fd);
+	int rc = stream_init(&stream, fd, maps);
 
 	*out = (struct mesh){ 0 };
 	if (rc == 0)
@@ -549,6 +570,11 @@ int mesh_file_read(struct mesh *out, struct hash key, int fd)
 	if (rc < 0)
 		mesh_finish(out);
 	return rc;
+}
+
+int mesh_file_read(struct mesh *out, struct hash key, int fd)
+{
+	return read_mesh(out, key, fd, false);
 }
 
 int mesh_file_load(struct mesh *out, struct hash key, const char *path)
@@ -559,7 +585,7 @@ int mesh_file_load(struct mesh *out, struct hash key, const char *path)
 	*out = (struct mesh){ 0 };
 	if (fd < 0)
 		return -errno;
-	rc = mesh_file_read(out, key, fd);
+	rc = read_mesh(out, key, fd, true);
 	close(fd);
 	return rc;
 }

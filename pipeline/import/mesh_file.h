@@ -33,8 +33,9 @@ must_check int mesh_file_load(struct mesh *out, struct hash key, const char *pat
 /* Writes a mesh to an open descriptor, from its current offset. The descriptor stays open. Negative
  * errno. */
 must_check int mesh_file_write(int fd, const struct mesh *mesh, struct hash key);
-/* Reads a mesh from an open descriptor, from its current offset. It stays open. Results as
- * mesh_file_load, without -ENOENT. */
+/* Reads a mesh from an open descriptor, from its current offset. It stays open. Its arrays are
+ * copies that may be changed. Results as mesh_file_load, without -ENOENT. -ENOSPC: the disk is
+ * full. */
 must_check int mesh_file_read(struct mesh *out, struct hash key, int fd);
 
 #endif

@@ -244,6 +244,26 @@ static void a_moved_mesh_is_its_file(void **state)
 	scan_remove(path);
 }
 
+/* As the import does with what a reader process made: it places, repairs and appends it. */
+static void a_mesh_that_is_read_can_be_changed_however_large(void **state)
+{
+	struct mesh mesh = make_large_mesh(), read;
+	const size_t count = mesh.triangle_count;
+	int fd = memfd_create("mesh", MFD_CLOEXEC);
+	(void)state;
+
+	CHECK(fd >= 0 && mesh_file_write(fd, &mesh, key) == 0 && lseek(fd, 0, SEEK_SET) == 0);
+	mesh_finish(&mesh);
+	CHECK(mesh_file_read(&read, key, fd) == 0);
+	close(fd);
+	check_large_mesh(&read);
+	read.positions[0][0] = 7;
+	read.triangles[count - 1][2] = 5;
+	CHECK(SPILL_RESIZE(read.triangles, count, count + 1) == 0);
+	CHECK(read.positions[0][0] == 7 && read.triangles[count - 1][2] == 5);
+	mesh_finish(&read);
+}
+
 static int read_back(const uint8_t *bytes, size_t size)
 {
 	int fd = memfd_create("mesh", MFD_CLOEXEC);
@@ -292,6 +312,7 @@ int main(void)
 		cmocka_unit_test(appending_shifts_indices_and_fills_what_is_missing),
 		cmocka_unit_test(a_saved_mesh_loads_equal_under_its_key_only),
 		cmocka_unit_test(a_moved_mesh_is_its_file),
+		cmocka_unit_test(a_mesh_that_is_read_can_be_changed_however_large),
 		cmocka_unit_test(every_truncation_and_every_flipped_byte_is_noticed),
 	};
 
