@@ -24,18 +24,6 @@ static size_t format_place(char *out, size_t bytes, const char *file, unsigned l
 	return (size_t)length < bytes ? (size_t)length : bytes - 1;
 }
 
-/* The text may quote bytes of a file, and is printed to terminals and logs. */
-static void make_printable(char *text)
-{
-	while (*text) {
-		const size_t n = utf8_bytes(text, SIZE_MAX);
-
-		if (n == 0)
-			*text = '?';
-		text += n > 0 ? n : 1;
-	}
-}
-
 static struct diagnostic *get(struct diagnostics *diagnostics, uint32_t i)
 {
 	return i == 0 ? &diagnostics->first : &diagnostics->more[i - 1];
@@ -76,7 +64,7 @@ int diagnostics_add(struct diagnostics *diagnostics, int error, const char *file
 	va_start(args, sentence);
 	vsnprintf(text + added->place_bytes, sizeof(text) - added->place_bytes, sentence, args);
 	va_end(args);
-	make_printable(text);
+	utf8_make_printable(text); /* it may quote bytes of a file */
 	utf8_cut(text, DIAGNOSTIC_BYTES - 1);
 	memcpy(added->text, text, strlen(text) + 1);
 	return error;

@@ -33,3 +33,14 @@ void utf8_cut(char *text, size_t bytes)
 	}
 	text[at] = '\0';
 }
+
+void utf8_make_printable(char *text)
+{
+	while (*text) {
+		const size_t n = utf8_bytes(text, SIZE_MAX);
+
+		if (n == 0)
+			*text = '?';
+		text += n > 0 ? n : 1;
+	}
+}

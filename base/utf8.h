@@ -11,5 +11,7 @@
 size_t utf8_bytes(const char *text, size_t left);
 /* Cuts the text to at most that many bytes, without splitting a character. */
 void utf8_cut(char *text, size_t bytes);
+/* Replaces every byte that belongs to no character of UTF-8, or to a control character, by '?'. */
+void utf8_make_printable(char *text);
 
 #endif

@@ -7,11 +7,14 @@
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "base/utf8.h"
 
 enum { ARGUMENTS_MAX = 16, LAST_BYTES = 4096 };
 
@@ -66,6 +69,9 @@ static void become_content(const struct content_run_options *options, int log_fd
 	prctl(PR_SET_PDEATHSIG, SIGKILL);
 	if (getppid() != parent)
 		_exit(127); /* it was killed before that */
+	/* Its lines are for people, who read them on the page, and not for the journal, which would
+	 * get the number of a level in the place of "error: ". */
+	unsetenv("JOURNAL_STREAM");
 	sigemptyset(&none);
 	sigprocmask(SIG_SETMASK, &none, NULL);
 	set_arguments(arguments, options, sequence);
@@ -74,6 +80,14 @@ static void become_content(const struct content_run_options *options, int log_fd
 	execv(options->program, (char *const *)arguments);
 	dprintf(STDERR_FILENO, "%s: %s\n", options->program, strerror(errno));
 	_exit(127);
+}
+
+/* Keeps a line as a message, which readers of state.json take only if it is UTF-8 and fits. */
+static void keep_line(char *message, char *line)
+{
+	utf8_make_printable(line);
+	utf8_cut(line, PUBLISH_MESSAGE_BYTES - 1);
+	memcpy(message, line, strlen(line) + 1);
 }
 
 /* The last line that says an error, else the last line. */
@@ -94,7 +108,7 @@ static void find_cause(const struct content_run_options *options, char *message)
 	while ((line = strsep(&rest, "\n")))
 		if (*line &&
 		    (strncmp(line, "error: ", 7) == 0 || strncmp(message, "error: ", 7) != 0))
-			snprintf(message, PUBLISH_MESSAGE_BYTES, "%s", line);
+			keep_line(message, line);
 }
 
 static int judge(int status, const struct content_run_options *options, char *message)

@@ -14,8 +14,8 @@ struct content_run_options {
 	int stop_fd;             /* readable: the child is to end */
 };
 
-/* Waits for the child, which dies with us. -EIO: it failed, and message says why, in one line;
- * -ECANCELED: stop_fd became readable, and the child has ended. */
+/* Waits for the child, which dies with us. -EIO: it failed, and message says why, in one line of
+ * UTF-8; -ECANCELED: stop_fd became readable, and the child has ended. */
 must_check int content_run(const struct content_run_options *options,
 			   char message[PUBLISH_MESSAGE_BYTES]);
 

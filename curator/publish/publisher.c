@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "base/service.h"
 #include "base/transient.h"
+#include "base/utf8.h"
 #include "curator/publish/content_run.h"
 #include "curator/publish/publish_files.h"
 #include "pipeline/content/content.h"
@@ -77,6 +78,7 @@ static void fill(struct publish_release *out, const struct release *release)
 	*out = (struct publish_release){ .sequence = release->sequence };
 	hash_to_hex(release->root, out->root);
 	memcpy(out->comment, release->comment, sizeof(out->comment));
+	utf8_make_printable(out->comment); /* the command line takes any, also of two lines */
 }
 
 /* The newest first. by NULL: nobody has published just now. */

@@ -189,6 +189,7 @@ def check_releases(work, petra):
     assert state["step"] == "done" and (state["before"], state["after"]) == (1, 2), state
     newest, first = state["releases"]
     assert newest["comment"] == "--out is no option here" and newest["by"] == "petra" and newest["at"] > 0
+    assert first["comment"] == "by hand,?in two lines", first
     assert newest["current"] and not first["current"] and first["sequence"] == 1
     assert "release 2" in state["log"]
     assert petra.ask("GET", "/api/changes")[2]["bytes"] == 0

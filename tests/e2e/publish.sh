@@ -11,7 +11,8 @@ work=build/e2e/publish
 rm -rf "$work"
 mkdir -p "$work"
 tiny_content "$work/content" 10000 2000
-build/gopura-content build "$work/content" --out "$work/release" --keys "$work/keys" >"$work/log" 2>&1 || { cat "$work/log"; fail "the first build"; }
+build/gopura-content build "$work/content" --out "$work/release" --keys "$work/keys" --comment $'by hand,\nin two lines' \
+	>"$work/log" 2>&1 || { cat "$work/log"; fail "the first build"; }
 for one in ana:editor petra:publisher; do
 	echo "password of ${one%:*}" | build/gopura-curator user add "$work/content" "${one%:*}" --role "${one#*:}"
 done
