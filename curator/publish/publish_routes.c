@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/json_tree.h"
 #include "base/log.h"
+#include "base/transient.h"
 #include "curator/publish/changes.h"
 #include "curator/publish/publish_files.h"
 
@@ -139,6 +140,13 @@ static void add_releases(cJSON *json, const struct publish_releases *releases)
 	}
 }
 
+/* A file that is damaged, or is not ours to read, counts as none: it is replaced when somebody
+ * asks, or by the publisher. */
+static int unless_damaged(int rc)
+{
+	return is_transient(rc) ? rc : 0;
+}
+
 static void get_publish(void *user, const struct api_request *request,
 			struct api_response *response)
 {
@@ -147,12 +155,12 @@ static void get_publish(void *user, const struct api_request *request,
 	struct publish_state state;
 	struct publish_releases releases;
 	cJSON *json;
-	int rc = publish_request_read(&asked, place->folder);
+	int rc = unless_damaged(publish_request_read(&asked, place->folder));
 
 	if (rc == 0)
-		rc = publish_state_read(&state, place->folder);
+		rc = unless_damaged(publish_state_read(&state, place->folder));
 	if (rc == 0)
-		rc = publish_releases_read(&releases, place->folder);
+		rc = unless_damaged(publish_releases_read(&releases, place->folder));
 	if (rc < 0) {
 		api_fail(response, 500, "the files of .curator/publish cannot be read: %s",
 			 strerror(-rc));
@@ -228,9 +236,9 @@ static int ask(const struct publish_place *place, struct publish_request *wish,
 	int rc = publish_files_make(place->folder, diagnostics);
 
 	if (rc == 0)
-		rc = publish_request_read(&before, place->folder);
+		rc = unless_damaged(publish_request_read(&before, place->folder));
 	if (rc == 0)
-		rc = publish_state_read(&state, place->folder);
+		rc = unless_damaged(publish_state_read(&state, place->folder));
 	if (rc == 0 && publish_is_pending(&before, &state))
 		return diagnostics_add(diagnostics, -EBUSY, NULL, 0,
 				       "%s is publishing already: wait for the end", before.by);

@@ -265,21 +265,42 @@ static int work(struct publisher *publisher, struct publish_state *state,
 	return rc < 0 ? rc : done;
 }
 
+/* Nobody knows whether the last request was carried out: nothing is published that nobody asks for
+ * now. */
+static int begin_state_anew(const struct publish_request *request, const char *folder)
+{
+	const struct publish_state state = {
+		.request = *request,
+		.step = PUBLISH_FAILED,
+		.ended_s = clock_wall_s(),
+		.message = "what became of it is not known, because state.json was damaged: look "
+			   "at the releases, and ask again",
+	};
+	const int rc = publish_state_write(&state, folder);
+
+	if (rc < 0)
+		log_error("curator", "state.json: %s", strerror(-rc));
+	else
+		log_warn("curator", "state.json was damaged, and is begun anew");
+	return rc;
+}
+
 /* Works off what waits. Returns 0 also if there was nothing; -EIO: it failed. */
 static int step(struct publisher *publisher)
 {
 	const char *folder = publisher->options->folder;
 	struct publish_request request;
 	struct publish_state state;
-	int rc = publish_state_read(&state, folder);
+	const int known = publish_state_read(&state, folder);
+	int rc;
 
-	if (is_transient(rc)) {
-		log_error("curator", "state.json: %s", strerror(-rc));
-		return rc;
+	if (is_transient(known)) {
+		log_error("curator", "state.json: %s", strerror(-known));
+		return known;
 	}
-	if (rc < 0)
-		log_warn("curator", "state.json is damaged: what was asked for last is not known");
 	rc = publish_request_read(&request, folder);
+	if (known < 0 && !is_transient(rc))
+		return begin_state_anew(&request, folder);
 	if (rc < 0) {
 		log_error("curator", "request.json: %s", strerror(-rc));
 		return is_transient(rc) ? rc : 0;

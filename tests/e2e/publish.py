@@ -207,6 +207,33 @@ def check_releases(work, petra):
     (work / "content/pages/tower.en.html").write_text("<p>Another text.</p>")
 
 
+def check_damage(work, petra):
+    """A file that is damaged is replaced, and nothing is published that nobody has asked for."""
+    def damage(name):
+        path = work / "content/.curator/publish" / name
+        path.with_suffix(".test").write_text("{")
+        path.with_suffix(".test").rename(path)
+    ask = lambda: petra.ask("GET", "/api/publish")
+    before = ask()[2]["releases"]
+    damage("request.json")
+    status, _, state = ask()
+    assert status == 200 and state["releases"] == before, state
+    publish(petra, "after a damaged request", sequence=2)
+    state = settled(petra)
+    assert state["step"] == "done" and len(state["releases"]) == len(before) + 1, state
+    damage("state.json")
+    until = time.monotonic() + 30
+    while (after := ask()[2])["step"] != "failed":
+        assert time.monotonic() < until, after
+        time.sleep(0.05)
+    assert "ask again" in after["message"] and after["releases"] == state["releases"], after
+    damage("releases.json")
+    assert ask()[0] == 200
+    publish(petra, "after damaged releases", sequence=1)
+    state = settled(petra)
+    assert state["step"] == "done" and len(state["releases"]) == len(before) + 2, state
+
+
 def check_renewal(desk, work, petra):
     """Once a day what is published is signed anew, and nothing else: not what a curator has changed since."""
     before, log = petra.ask("GET", "/api/publish?log=1")[2], work / "content/.curator/publish/renewal.log"
@@ -288,6 +315,7 @@ def check(desk, work, kills, seed):
     check_wishes(ana, petra)
     check_seen(work, ana, petra)
     check_releases(work, petra)
+    check_damage(work, petra)
     check_renewal(desk, work, petra)
     check_page(desk, work)
     check_kills(desk, work, kills, seed)
