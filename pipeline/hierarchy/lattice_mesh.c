@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -149,6 +150,14 @@ static void turn_smallest_first(uint32_t triangle[3])
 	}
 }
 
+/* Whether two triangles whose smallest vertex is the same one have the same corners, on whichever
+ * side. A sheet that is there from both sides encloses nothing: its normals are no direction, and
+ * collapses cancel it (collapse.h). One side is enough, because both are drawn. */
+static bool is_copy(const uint32_t a[3], const uint32_t b[3])
+{
+	return (a[1] == b[1] && a[2] == b[2]) || (a[1] == b[2] && a[2] == b[1]);
+}
+
 static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *counts,
 			  const struct mesh *mesh, const uint32_t *to)
 {
@@ -170,8 +179,7 @@ static int keep_triangles(struct lattice_mesh *out, struct lattice_counts *count
 		}
 		turn_smallest_first(kept);
 		other = first[kept[0]];
-		while (other != NO_TRIANGLE &&
-		       memcmp(out->triangles[other], kept, sizeof(*out->triangles)) != 0)
+		while (other != NO_TRIANGLE && !is_copy(out->triangles[other], kept))
 			other = next[other];
 		if (other != NO_TRIANGLE) {
 			counts->duplicate_triangles++;

@@ -19,9 +19,9 @@ struct sampler_options {
 };
 
 /* Places the sampling points of a model: over a box 1.5 times as large, `points` along the longest
- * side and as many on the other sides as keep the spacing similar; above the ground unless
- * below_ground. face_px is the resolution of a face's finest level, which is rounded down to
- * SAMPLE_TILE_PX << n. */
+ * side and as many on the other sides as keep the spacing similar, but not along the plane of a
+ * flat model; above the ground unless below_ground. face_px is the resolution of a face's finest
+ * level, which is rounded down to SAMPLE_TILE_PX << n. */
 void sampler_grid(struct sample_grid *out, const float low_m[3], const float high_m[3],
 		  uint32_t points, uint32_t face_px, bool below_ground);
 /* Adds a vantage point where every visit begins: as temple.ini says, or by the model's box. */

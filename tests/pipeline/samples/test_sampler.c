@@ -126,6 +126,29 @@ static void plans_grids_by_the_longest_side(void **state)
 	CHECK(grid.count[2] == 1 && grid.spacing_m[2] > 0 && grid.level_count == 1);
 }
 
+/* A wall 7 m wide and a centimetre thick, and the same as a floor: seen from their own plane they
+ * would show nothing. */
+static void sees_flat_things_from_before(void **state)
+{
+	const float wall[2][3] = { { 0, -0.01f, 0 }, { 7, 0, 4 } }, floor_m[3] = { 7, 7, 0.01f };
+	struct sample_grid grid;
+	float place[3];
+
+	(void)state;
+	for (uint32_t points = 4; points <= 32; points *= 2) {
+		const float distance = 1.5f * 7 / (float)(points - 1);
+
+		sampler_grid(&grid, wall[0], wall[1], points, 512, false);
+		CHECK(grid.count[1] == 2);
+		for (uint32_t y = 0; y < 2; y++) {
+			sampler_point(place, &grid, (uint32_t[3]){ 0, y, 0 });
+			CHECK(fabsf(place[1] - (y ? 0 : -0.01f)) > 0.2f * distance);
+		}
+		sampler_grid(&grid, (float[3]){ 0, 0, 0 }, floor_m, points, 512, false);
+		CHECK(grid.count[2] == 1 && grid.origin_m[2] > 0.2f * distance);
+	}
+}
+
 static void finds_the_points_inside(void **state)
 {
 	uint32_t states[SAMPLE_STATES];
@@ -400,6 +423,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(plans_grids_by_the_longest_side),
+		cmocka_unit_test(sees_flat_things_from_before),
 		cmocka_unit_test(finds_the_points_inside),
 		cmocka_unit_test(knows_what_each_face_covers),
 		cmocka_unit_test(knows_near_and_far),
