@@ -3,6 +3,8 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,38 +29,83 @@ static int put_file(struct buffer *text, const struct content *content, const ch
 	return 0;
 }
 
-/* Selects files that a scan may refer to. */
-static int is_companion(const struct dirent *entry)
+/* Where scans lie beside temple.ini, these folders beside them belong to pages, scenes and parts: a
+ * picture of a page changes no scan. */
+static bool is_for_pages(const struct content *content, const char *path)
+{
+	static const char *const names[] = { "pages", "pictures", "regions", "scenes" };
+	const char *name = path + strlen(content->folder);
+
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		if (name[0] == '/' && strcmp(name + 1, names[i]) == 0)
+			return true;
+	return false;
+}
+
+/* Selects what the import may read (pipeline/import/import_files.h): nothing hidden. */
+static int is_visible(const struct dirent *entry)
+{
+	return entry->d_name[0] != '.';
+}
+
+/* Whether a scan may refer to such a file. */
+static bool is_companion(const char *path)
 {
 	static const char *const extensions[] = { ".mtl", ".jpg", ".jpeg", ".png",
 						  ".bin", ".wrl", ".wrz" };
-	const char *dot = strrchr(entry->d_name, '.');
+	const char *dot = strrchr(path, '.');
 
 	for (size_t i = 0; dot && i < ARRAY_COUNT(extensions); i++)
 		if (strcasecmp(dot, extensions[i]) == 0)
-			return 1;
-	return 0;
+			return true;
+	return false;
+}
+
+enum { DEPTH_MAX = 16, NAME_ROOM = NAME_MAX + 2 /* and a slash and an end */ };
+
+static int put_folder(struct buffer *text, const struct content *content, char *path, int depth);
+
+/* path has room for NAME_ROOM bytes more than CONTENT_PATH_BYTES. */
+static int put_entry(struct buffer *text, const struct content *content, char *path, int depth)
+{
+	struct stat status;
+
+	if (is_companion(path))
+		return put_file(text, content, path);
+	if (depth == DEPTH_MAX || strlen(path) >= CONTENT_PATH_BYTES || lstat(path, &status) < 0 ||
+	    !S_ISDIR(status.st_mode) || is_for_pages(content, path))
+		return 0;
+	return put_folder(text, content, path, depth + 1);
+}
+
+/* Puts the companions in the folder at path and below. A folder below that cannot be listed is as
+ * good as empty, because the import cannot read in it either. */
+static int put_folder(struct buffer *text, const struct content *content, char *path, int depth)
+{
+	const size_t length = strlen(path);
+	struct dirent **entries;
+	int count, rc = 0;
+
+	count = scandir(path, &entries, is_visible, alphasort);
+	if (count < 0)
+		return depth == 0 || is_transient(-errno) ? -errno : 0;
+	for (int i = 0; i < count; i++) {
+		snprintf(path + length, NAME_ROOM, "/%s", entries[i]->d_name);
+		if (rc == 0)
+			rc = put_entry(text, content, path, depth);
+		free(entries[i]);
+	}
+	path[length] = '\0';
+	free(entries);
+	return rc;
 }
 
 static int put_companions(struct buffer *text, const struct content *content, const char *scan)
 {
-	char folder[CONTENT_PATH_BYTES], path[CONTENT_PATH_BYTES + 256];
-	const char *slash = strrchr(scan, '/');
-	struct dirent **entries;
-	int count, rc = 0;
+	char path[CONTENT_PATH_BYTES + NAME_ROOM];
 
-	snprintf(folder, sizeof(folder), "%.*s", (int)(slash - scan), scan);
-	count = scandir(folder, &entries, is_companion, alphasort);
-	if (count < 0)
-		return -errno;
-	for (int i = 0; i < count; i++) {
-		snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name);
-		if (rc == 0)
-			rc = put_file(text, content, path);
-		free(entries[i]);
-	}
-	free(entries);
-	return rc;
+	snprintf(path, CONTENT_PATH_BYTES, "%.*s", (int)(strrchr(scan, '/') - scan), scan);
+	return put_folder(text, content, path, 0);
 }
 
 static void put_transform(struct buffer *text, const struct transform *transform)

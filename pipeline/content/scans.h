@@ -33,8 +33,8 @@ void scans_destroy(struct scans *scans); /* NULL is fine */
 const struct content *scans_content(const struct scans *scans);
 
 /* Hashes everything the mesh is made from: names, sizes and modification times of the scans and of
- * the files beside them (mtl, pictures, buffers), transforms, and the import options. Equal keys
- * mean equal meshes. Negative errno, with a diagnostic. */
+ * the files beside and below (mtl, pictures, buffers), transforms, and the import options. Equal
+ * keys mean equal meshes. Negative errno, with a diagnostic. */
 must_check int scans_key(struct scans *scans, struct hash *out, struct diagnostics *diagnostics);
 
 /* Says what surface is to be made. Reads headers only. */

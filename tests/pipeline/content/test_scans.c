@@ -1,0 +1,110 @@
+/* What a build takes of .work, and what it makes again. */
+#include "pipeline/content/scans.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "format/picture.h"
+#include "tests/check.h"
+#include "tests/pipeline/import/scan_text.h"
+
+static char ini_path[256];
+
+static int make_folder(void **state)
+{
+	static const char ini[] = "[model]\nscans = scan.obj\n",
+			  obj[] = "mtllib scan.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\n"
+				  "usemtl skin\nf 1/1 2/1 3/1\n",
+			  mtl[] = "newmtl skin\nKd 0.2 0.4 0.6\nmap_Kd textures/skin.png\n";
+	char path[300];
+
+	(void)state;
+	scan_write(ini_path, "temple.ini", ini, strlen(ini));
+	scan_write_beside(ini_path, "scan.obj", obj, strlen(obj));
+	scan_write_beside(ini_path, "scan.mtl", mtl, strlen(mtl));
+	for (const char *const *name = (const char *const[]){ "textures", "pictures", NULL }; *name;
+	     name++) {
+		snprintf(path, sizeof(path), "%.*s/%s", (int)(strrchr(ini_path, '/') - ini_path),
+			 ini_path, *name);
+		CHECK(mkdir(path, 0755) == 0);
+	}
+	return 0;
+}
+
+static int remove_folder(void **state)
+{
+	(void)state;
+	scan_remove(ini_path);
+	return 0;
+}
+
+static void write_picture(const char *name, uint32_t side)
+{
+	uint8_t rgba[64] = { 0 };
+	const struct picture picture = { side, side, rgba };
+	struct buffer png;
+
+	buffer_init(&png, 1 << 16);
+	CHECK(picture_encode_png(&png, &picture) == 0);
+	scan_write_beside(ini_path, name, png.data, png.size);
+	buffer_finish(&png);
+}
+
+/* As a build does: returns how wide the scan's picture is in the mesh, and its key. */
+static uint32_t width_in_mesh(struct hash *key)
+{
+	char folder[256];
+	struct diagnostics diagnostics = { 0 };
+	struct content content;
+	struct scans *scans;
+	const struct mesh *mesh;
+	uint32_t width;
+
+	snprintf(folder, sizeof(folder), "%.*s", (int)(strrchr(ini_path, '/') - ini_path),
+		 ini_path);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_key(scans, key, &diagnostics) == 0);
+	CHECK(scans_get_mesh(scans, &mesh, &diagnostics) == 0);
+	width = mesh->textures[mesh->materials[0]].width;
+	scans_destroy(scans);
+	content_release(&content);
+	return width;
+}
+
+static void a_picture_below_is_seen_when_it_comes_or_changes(void **state)
+{
+	struct hash first, second, third;
+	(void)state;
+
+	CHECK(width_in_mesh(&first) == 1); /* a plain colour stands for it */
+	write_picture("textures/skin.png", 2);
+	CHECK(width_in_mesh(&second) == 2);
+	CHECK(memcmp(&first, &second, sizeof(first)) != 0);
+	write_picture("textures/skin.png", 4);
+	CHECK(width_in_mesh(&third) == 4);
+	CHECK(memcmp(&second, &third, sizeof(first)) != 0);
+}
+
+static void a_picture_of_a_page_makes_no_scan_anew(void **state)
+{
+	struct hash before, after;
+	(void)state;
+
+	(void)width_in_mesh(&before);
+	write_picture("pictures/page.png", 3);
+	(void)width_in_mesh(&after);
+	CHECK(memcmp(&before, &after, sizeof(before)) == 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(a_picture_below_is_seen_when_it_comes_or_changes,
+						make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_picture_of_a_page_makes_no_scan_anew, make_folder,
+						remove_folder),
+	};
+
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
