@@ -197,14 +197,14 @@ static int explain(int rc, struct diagnostics *diagnostics)
 int picture_import(struct buffer *out, bool *is_png, struct bytes file,
 		   struct diagnostics *diagnostics)
 {
-	struct sandbox_options options = { .timeout_s = TIMEOUT_S };
+	struct sandbox_options options = { .limits.timeout_s = TIMEOUT_S };
 	struct job *job = shared_memory_create(sizeof(*job));
 	struct diagnostics told = { 0 };
 	int rc;
 
 	if (!job)
 		return explain(-ENOMEM, diagnostics);
-	options.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
+	options.limits.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
 	job->file = file;
 	rc = sandbox_run(work, job, &options, "picture", &told);
 	if (rc == 0 && (job->bytes == 0 || job->bytes > sizeof(job->data)))

@@ -174,7 +174,7 @@ static int work(void *shared, struct diagnostics *diagnostics)
 
 static int run(struct buffer *out, struct bytes file)
 {
-	struct sandbox_options options = { .timeout_s = TIMEOUT_S };
+	struct sandbox_options options = { .limits.timeout_s = TIMEOUT_S };
 	const size_t room = INFO_SPOKEN_BYTES_MAX;
 	struct job *job = shared_memory_create(sizeof(*job) + room);
 	struct diagnostics told = { 0 };
@@ -182,7 +182,7 @@ static int run(struct buffer *out, struct bytes file)
 
 	if (!job)
 		return -ENOMEM;
-	options.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
+	options.limits.memory_bytes = sandbox_memory_bytes((uint64_t)MEMORY_MB << 20);
 	job->file = file;
 	job->room = room;
 	rc = sandbox_run(work, job, &options, "recording", &told);

@@ -185,6 +185,21 @@ int import_files_open(struct import_files *files, const char *name)
 	return fd;
 }
 
+uint64_t import_files_count(struct import_files_counted *counted, int fd)
+{
+	struct stat status;
+
+	if (counted->count == IMPORT_FILES_COUNTED_MAX || fstat(fd, &status) < 0)
+		return 0;
+	for (uint32_t i = 0; i < counted->count; i++)
+		if (counted->files[i].device == status.st_dev &&
+		    counted->files[i].number == status.st_ino)
+			return 0;
+	counted->files[counted->count].device = status.st_dev;
+	counted->files[counted->count++].number = status.st_ino;
+	return (uint64_t)status.st_size;
+}
+
 void import_files_note(struct import_files_failure *failure, int rc, const char *name)
 {
 	if (failure->rc == 0 && is_transient(rc)) {

@@ -8,6 +8,8 @@
 #include "base/compiler.h"
 #include "base/diagnostics.h"
 
+enum { IMPORT_FILES_COUNTED_MAX = 1024 };
+
 /* Returns whether a name ends with the extension (".ply") after at least one other character, in
  * any case of letters. */
 bool import_has_extension(const char *name, const char *extension);
@@ -39,12 +41,26 @@ void import_files_note(struct import_files_failure *failure, int rc, const char 
 must_check int import_files_judge(const struct import_files_failure *failure, int rc,
 				  const char *scan_path, struct diagnostics *diagnostics);
 
+/* The files that a scan named and that were counted, each once however often it is named. */
+struct import_files_counted {
+	uint32_t count;
+	struct {
+		uint64_t device, number;
+	} files[IMPORT_FILES_COUNTED_MAX];
+};
+
+/* Returns the size of an open file, or 0 if it was counted before or no more can be. */
+uint64_t import_files_count(struct import_files_counted *counted, int fd);
+
 struct import_files {
 	const char *scan_path; /* borrowed; for messages */
 	int folder_fd;         /* borrowed; not used in the sandbox */
 	/* the parent opens files, and the sandbox limits the memory for pictures */
 	bool in_sandbox;
-	uint64_t picture_bytes_left; /* outside the sandbox: for all decoded pictures together */
+	/* outside the sandbox: for all decoded pictures together; each that is opened adds
+	 * picture_bytes_per_byte of its file */
+	uint64_t picture_bytes_left, picture_bytes_per_byte;
+	struct import_files_counted counted;
 	struct import_files_failure failure; /* outside the sandbox */
 };
 

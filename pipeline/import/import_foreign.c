@@ -409,15 +409,37 @@ struct parent {
 	char seen_path[PATH_MAX];
 	int scan_fd, folder_fd, result_fd;
 	struct import_files_failure failure;
+	const struct import_options *options; /* borrowed */
+	uint64_t file_bytes;                  /* of the scan and of what it named so far */
+	struct import_files_counted counted;
 };
 
-static int open_for_child(void *data, const char *name)
+/* By default about 200 times what intact files of that size take on an idle machine. Of the address
+ * space, the child begins with that of its parent, where scans that were read before may lie. */
+static struct sandbox_limits limits_of(const struct parent *parent)
+{
+	const struct import_options *options = parent->options;
+
+	return (struct sandbox_limits){
+		.timeout_s = options->timeout_s ? options->timeout_s
+						: (uint32_t)(6 + (parent->file_bytes >> 18)),
+		.memory_bytes =
+			sandbox_memory_bytes(import_memory_bytes(options, parent->file_bytes)),
+	};
+}
+
+/* A glTF of a few kB may name hundreds of MB, and an OBJ many pictures. */
+static int open_for_child(void *data, const char *name, struct sandbox_limits *limits)
 {
 	struct parent *parent = data;
 	int fd;
 
 	if (strcmp(name, parent->seen_path) != 0) {
 		fd = import_files_open_at(parent->folder_fd, name);
+		if (fd >= 0) {
+			parent->file_bytes += import_files_count(&parent->counted, fd);
+			*limits = limits_of(parent);
+		}
 	} else {
 		fd = fcntl(parent->scan_fd, F_DUPFD_CLOEXEC, 0);
 		fd = fd < 0 ? -errno : fd;
@@ -449,11 +471,17 @@ static int open_scan(const char *path)
 	return -EINVAL;
 }
 
-static int parent_init(struct parent *parent, const char *path, const char *extension)
+static int parent_init(struct parent *parent, const char *path, const char *extension,
+		       const struct import_options *options, uint64_t file_bytes)
 {
 	int rc;
 
-	*parent = (struct parent){ .path = path, .scan_fd = -1, .folder_fd = -1, .result_fd = -1 };
+	*parent = (struct parent){ .path = path,
+				   .scan_fd = -1,
+				   .folder_fd = -1,
+				   .result_fd = -1,
+				   .options = options,
+				   .file_bytes = file_bytes };
 	rc = make_seen_path(parent->seen_path, path, extension);
 	if (rc == 0)
 		rc = parent->scan_fd = open_scan(path);
@@ -475,19 +503,15 @@ static void parent_finish(struct parent *parent)
 }
 
 static int run_job(struct mesh *out, struct job *job, struct parent *parent,
-		   const struct import_options *options, uint64_t file_bytes,
 		   struct diagnostics *diagnostics)
 {
-	/* By default about 200 times what an intact file of that size takes on an idle machine. */
-	const struct sandbox_options limits = {
-		.timeout_s = options->timeout_s ? options->timeout_s
-						: (uint32_t)(6 + (file_bytes >> 18)),
-		.memory_bytes = import_memory_bytes(options, file_bytes),
+	const struct sandbox_options options = {
+		.limits = limits_of(parent),
 		.result_fd = parent->result_fd,
 		.open = open_for_child,
 		.open_data = parent,
 	};
-	int rc = sandbox_run(read_scene, job, &limits, parent->path, diagnostics);
+	int rc = sandbox_run(read_scene, job, &options, parent->path, diagnostics);
 
 	rc = import_files_judge(&parent->failure, rc, parent->path, diagnostics);
 	if (rc < 0)
@@ -519,7 +543,7 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 {
 	struct job *job = shared_memory_create(sizeof(*job));
 	struct parent parent;
-	int rc = parent_init(&parent, path, format.extension);
+	int rc = parent_init(&parent, path, format.extension, options, report->file_bytes);
 
 	if (!job && rc == 0)
 		rc = -ENOMEM;
@@ -530,7 +554,7 @@ int import_foreign(struct mesh *out, const char *path, struct import_foreign_for
 		job->format = format;
 		job->report = *report;
 		job->result_fd = parent.result_fd;
-		rc = run_job(out, job, &parent, options, report->file_bytes, diagnostics);
+		rc = run_job(out, job, &parent, diagnostics);
 		take_report(report, &job->report);
 	}
 	parent_finish(&parent);

@@ -10,12 +10,22 @@
 #include "base/parallel.h"
 #include "pipeline/import/import.h"
 
-/* Returns how much memory decoding may use. Unless the options set it, it grows with the file,
- * because a small file should not need much. */
+/* Of memory, for each byte of a scan and of the files that it names. */
+enum { IMPORT_BYTES_PER_BYTE = 64 };
+
+/* Returns how much memory decoding may use. Unless the options set it, it grows with the files,
+ * because small ones should not need much. */
 static inline uint64_t import_memory_bytes(const struct import_options *options,
 					   uint64_t file_bytes)
 {
-	return options->memory_bytes ? options->memory_bytes : (1ull << 30) + 64 * file_bytes;
+	return options->memory_bytes ? options->memory_bytes
+				     : (1ull << 30) + IMPORT_BYTES_PER_BYTE * file_bytes;
+}
+
+/* Returns how much more the pictures of a scan may take for each byte of their files. */
+static inline uint32_t import_bytes_per_byte(const struct import_options *options)
+{
+	return options->memory_bytes ? 0 : IMPORT_BYTES_PER_BYTE;
 }
 
 static inline uint32_t import_jobs(const struct import_options *options)

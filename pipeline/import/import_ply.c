@@ -201,6 +201,7 @@ static int load_textures(struct collector *collector, const char *path,
 	struct import_files files = {
 		.scan_path = path,
 		.picture_bytes_left = import_memory_bytes(options, report->file_bytes),
+		.picture_bytes_per_byte = import_bytes_per_byte(options),
 	};
 	struct mesh *mesh = &collector->mesh;
 	uint32_t count = collector->summary->texture_count;

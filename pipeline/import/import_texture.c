@@ -115,6 +115,9 @@ int import_texture(struct mesh_texture *out, struct import_files *files, const c
 	rc = fd < 0 ? fd : 0;
 	buffer_init(&file, PICTURE_FILE_MAX);
 	if (fd >= 0) {
+		if (!files->in_sandbox)
+			files->picture_bytes_left += files->picture_bytes_per_byte *
+						     import_files_count(&files->counted, fd);
 		rc = read_picture(&file, fd);
 		close(fd);
 	}

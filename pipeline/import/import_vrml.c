@@ -160,6 +160,7 @@ int import_vrml(struct mesh *out, const char *path, const struct import_options 
 	struct import_files files = {
 		.scan_path = path,
 		.picture_bytes_left = import_memory_bytes(options, report->file_bytes),
+		.picture_bytes_per_byte = import_bytes_per_byte(options),
 	};
 	struct vrml *scene = NULL;
 	int rc;

@@ -58,6 +58,26 @@ static void limit(int resource, rlim_t most)
 	setrlimit((__rlimit_resource_t)resource, &both);
 }
 
+/* Limits that the parent may raise later: pid 0 is the caller. The child cannot raise them, because
+ * it may not ask the kernel for that once it is locked down. */
+static void limit_softly(pid_t pid, int resource, rlim_t most)
+{
+	struct rlimit both;
+
+	if (prlimit(pid, (__rlimit_resource_t)resource, NULL, &both) < 0)
+		return;
+	both.rlim_cur = most < both.rlim_max ? most : both.rlim_max;
+	prlimit(pid, (__rlimit_resource_t)resource, &both, NULL);
+}
+
+static void apply(pid_t pid, const struct sandbox_limits *limits)
+{
+	limit_softly(pid, RLIMIT_CPU, limits->timeout_s);
+	limit_softly(pid, RLIMIT_FSIZE, limits->memory_bytes); /* the result is a file in memory */
+	if (ADDRESS_SPACE_IS_COUNTED)
+		limit_softly(pid, RLIMIT_AS, limits->memory_bytes);
+}
+
 /* ---- files that the parent opens for the child: it receives a name and sends a descriptor */
 
 union descriptor_room {
@@ -91,8 +111,10 @@ static bool send_opened(int socket, int fd)
 	return false;
 }
 
-/* Runs in the parent: answers one request. Returns false if no more can be answered. */
-static bool answer_one(int socket, const struct sandbox_options *options, uint32_t *opens)
+/* Runs in the parent: answers one request, which may raise *limits. Returns false if no more can be
+ * answered. */
+static bool answer_one(int socket, const struct sandbox_options *options, uint32_t *opens,
+		       pid_t pid, struct sandbox_limits *limits)
 {
 	char name[NAME_BYTES_MAX + 1];
 	ssize_t size = recv(socket, name, sizeof(name), MSG_DONTWAIT);
@@ -110,7 +132,8 @@ static bool answer_one(int socket, const struct sandbox_options *options, uint32
 		fd = -EMFILE;
 	else if (options->open) {
 		name[size] = '\0';
-		fd = options->open(options->open_data, name);
+		fd = options->open(options->open_data, name, limits);
+		apply(pid, limits);
 	}
 	const bool is_sent = send_opened(socket, fd);
 
@@ -188,12 +211,20 @@ static void close_others(int a, int b)
 static void set_limits(const struct sandbox_options *options)
 {
 	limit(RLIMIT_CORE, 0);
-	limit(RLIMIT_CPU, options->timeout_s);
 	limit(RLIMIT_NPROC, 0);
 	limit(RLIMIT_NOFILE, DESCRIPTORS_MAX);
-	limit(RLIMIT_FSIZE, options->memory_bytes); /* the result is a file in memory */
-	if (ADDRESS_SPACE_IS_COUNTED)
-		limit(RLIMIT_AS, options->memory_bytes);
+	apply(0, &options->limits);
+}
+
+/* Where the child may ask the kernel for more, only what it cannot raise is a limit. */
+static void harden_limits(void)
+{
+	static const int resources[] = { RLIMIT_CPU, RLIMIT_FSIZE, RLIMIT_AS };
+	struct rlimit both;
+
+	for (size_t i = 0; i < ARRAY_COUNT(resources); i++)
+		if (getrlimit((__rlimit_resource_t)resources[i], &both) == 0)
+			limit(resources[i], both.rlim_cur);
 }
 
 _Noreturn static void child(sandbox_work work, void *shared, const struct sandbox_options *options,
@@ -209,6 +240,8 @@ _Noreturn static void child(sandbox_work work, void *shared, const struct sandbo
 	set_limits(options);
 	outcome->files_wall = lockdown_files();
 	outcome->calls_wall = lockdown_calls();
+	if (outcome->calls_wall < 0)
+		harden_limits();
 	outcome->rc = work(shared, &diagnostics);
 	outcome->cause = diagnostics.first;
 	outcome->finished = true;
@@ -234,15 +267,16 @@ static uint64_t resident_bytes(pid_t pid)
 }
 
 /* Waits until the child ends (0) or must be killed (-ETIMEDOUT, -ENOMEM). */
-static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options *options)
+static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options *options,
+		 struct sandbox_limits *limits)
 {
-	int64_t end_ms = clock_now_ms() + (int64_t)options->timeout_s * 1000;
+	const int64_t began_ms = clock_now_ms();
 	uint32_t opens = 0;
 
 	for (;;) {
 		struct pollfd news[] = { { .fd = pid_fd, .events = POLLIN },
 					 { .fd = socket, .events = POLLIN } };
-		int64_t left_ms = end_ms - clock_now_ms();
+		int64_t left_ms = began_ms + (int64_t)limits->timeout_s * 1000 - clock_now_ms();
 
 		if (left_ms <= 0)
 			return -ETIMEDOUT;
@@ -251,13 +285,13 @@ static int watch(pid_t pid, int pid_fd, int socket, const struct sandbox_options
 		if (poll(news, ARRAY_COUNT(news), (int)left_ms) > 0) {
 			if (news[0].revents)
 				return 0;
-			if (news[1].revents && !answer_one(socket, options, &opens)) {
+			if (news[1].revents && !answer_one(socket, options, &opens, pid, limits)) {
 				/* the child may wait for an answer */
 				shutdown(socket, SHUT_RDWR);
 				socket = -1; /* poll ignores it */
 			}
 		}
-		if (!ADDRESS_SPACE_IS_COUNTED && resident_bytes(pid) > options->memory_bytes)
+		if (!ADDRESS_SPACE_IS_COUNTED && resident_bytes(pid) > limits->memory_bytes)
 			return -ENOMEM;
 	}
 }
@@ -280,29 +314,35 @@ static void tell_walls(const struct outcome *outcome, const char *name)
 }
 
 static int judge(int watched, int status, struct outcome *outcome,
-		 const struct sandbox_options *options, const char *name,
+		 const struct sandbox_limits *limits, const char *name,
 		 struct diagnostics *diagnostics)
 {
-	if (watched == -ETIMEDOUT || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
+	const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+
+	if (watched == -ETIMEDOUT || ended_by == SIGXCPU)
 		return diagnostics_add(diagnostics, -ETIMEDOUT, name, 0,
 				       "reading it took over %" PRIu32
 				       " s, so it was stopped; the file is "
 				       "damaged or too large: export it as PLY",
-				       options->timeout_s);
+				       limits->timeout_s);
 	if (watched == -ENOMEM)
 		return diagnostics_add(diagnostics, -ENOMEM, name, 0,
 				       "reading it took over %" PRIu64
 				       " MiB, so it was stopped; the "
 				       "file is damaged or too large: export it as PLY",
-				       options->memory_bytes >> 20);
+				       limits->memory_bytes >> 20);
 	if (watched < 0)
 		return diagnostics_add(diagnostics, watched, name, 0, "%s", strerror(-watched));
+	if (ended_by == SIGKILL)
+		return diagnostics_add(
+			diagnostics, -ENOMEM, name, 0,
+			"its reader was killed, as the system does when memory runs "
+			"out; end other programs and try again, or export it as PLY");
 	if (!outcome->finished)
 		return diagnostics_add(diagnostics, -EBADMSG, name, 0,
 				       "its reader crashed (%s), so the file is damaged: export it "
 				       "again, or as PLY",
-				       WIFSIGNALED(status) ? strsignal(WTERMSIG(status))
-							   : "the reader failed");
+				       ended_by ? strsignal(ended_by) : "the reader failed");
 	outcome->cause.text[DIAGNOSTIC_BYTES - 1] = '\0';
 	if (outcome->rc < 0 && outcome->cause.text[0])
 		return diagnostics_add(diagnostics, outcome->rc, NULL, 0, "%s",
@@ -311,7 +351,7 @@ static int judge(int watched, int status, struct outcome *outcome,
 }
 
 static int start_and_watch(sandbox_work work, void *shared, const struct sandbox_options *options,
-			   struct outcome *outcome, int *status)
+			   struct outcome *outcome, struct sandbox_limits *limits, int *status)
 {
 	pid_t parent = getpid(), pid;
 	int sockets[2], pid_fd, rc;
@@ -326,7 +366,7 @@ static int start_and_watch(sandbox_work work, void *shared, const struct sandbox
 	}
 	close(sockets[1]);
 	pid_fd = pid > 0 ? pidfd_open(pid, 0) : -1;
-	rc = pid_fd < 0 ? -errno : watch(pid, pid_fd, sockets[0], options);
+	rc = pid_fd < 0 ? -errno : watch(pid, pid_fd, sockets[0], options, limits);
 	if (pid > 0) {
 		if (rc < 0)
 			kill(pid, SIGKILL);
@@ -343,14 +383,15 @@ int sandbox_run(sandbox_work work, void *shared, const struct sandbox_options *o
 		const char *name, struct diagnostics *diagnostics)
 {
 	struct outcome *outcome = shared_memory_create(sizeof(*outcome));
+	struct sandbox_limits limits = options->limits;
 	int status = 0, rc;
 
 	if (!outcome)
 		return diagnostics_add(diagnostics, -ENOMEM, name, 0, "%s", strerror(ENOMEM));
-	rc = start_and_watch(work, shared, options, outcome, &status);
+	rc = start_and_watch(work, shared, options, outcome, &limits, &status);
 	if (rc == 0)
 		tell_walls(outcome, name);
-	rc = judge(rc, status, outcome, options, name, diagnostics);
+	rc = judge(rc, status, outcome, &limits, name, diagnostics);
 	shared_memory_destroy(outcome, sizeof(*outcome));
 	return rc;
 }
@@ -359,7 +400,8 @@ uint64_t sandbox_memory_bytes(uint64_t more_bytes)
 {
 	unsigned long long own_kb;
 
-	if (!proc_number("/proc/self/status", "VmSize: %llu kB", &own_kb))
+	if (!proc_number("/proc/self/status",
+			 ADDRESS_SPACE_IS_COUNTED ? "VmSize: %llu kB" : "VmRSS: %llu kB", &own_kb))
 		own_kb = 0;
 	return ((uint64_t)own_kb << 10) + more_bytes;
 }

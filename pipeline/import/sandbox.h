@@ -13,16 +13,21 @@
 #include "base/compiler.h"
 #include "base/diagnostics.h"
 
-struct sandbox_options {
-	uint32_t timeout_s; /* limit for wall-clock time and for processor time */
-	/* limit for the address space; for resident memory in a build with AddressSanitizer, which
-	 * reserves terabytes of address space */
+struct sandbox_limits {
+	uint32_t timeout_s; /* of wall-clock time and of processor time */
+	/* of the address space; of resident memory in a build with AddressSanitizer, which reserves
+	 * terabytes of address space */
 	uint64_t memory_bytes;
+};
+
+struct sandbox_options {
+	struct sandbox_limits limits;
 	int result_fd; /* stays open in the child, for its result; 0: none */
 	/* Called in the parent when the child calls sandbox_open. Returns a descriptor, which is
 	 * taken, or a negative errno. It must check the name, because the child may be under
-	 * foreign control. NULL: nothing can be opened. */
-	int (*open)(void *data, const char *name);
+	 * foreign control. It may raise *limits, because the child now has more to read. NULL:
+	 * nothing can be opened. */
+	int (*open)(void *data, const char *name, struct sandbox_limits *limits);
 	void *open_data;
 };
 

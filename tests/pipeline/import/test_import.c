@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <sys/mman.h>
 
 #include "base/bytes.h"
 #include "format/picture.h"
@@ -419,6 +420,26 @@ static void gltf_pictures_lie_where_the_file_has_them(void **state)
 	}
 }
 
+/* As the second scan of a folder: the reader process begins with what the first one takes. */
+static void a_small_scan_is_read_beside_a_large_one(void **state)
+{
+	static const char obj[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+	const size_t large = (size_t)8 << 30;
+	void *other =
+		mmap(NULL, large, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+	const struct import_options options = { 0 };
+	struct diagnostics diagnostics;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(other != MAP_FAILED);
+	if (import_text(&mesh, NULL, "small.obj", obj, &options, &diagnostics) < 0)
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(mesh.triangle_count == 1);
+	mesh_finish(&mesh);
+	munmap(other, large);
+}
+
 static void a_missing_or_damaged_picture_is_a_warning(void **state)
 {
 	static const char obj[] = "mtllib skin.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\n"
@@ -682,6 +703,7 @@ int main(void)
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
 		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
 		cmocka_unit_test(gltf_pictures_lie_where_the_file_has_them),
+		cmocka_unit_test(a_small_scan_is_read_beside_a_large_one),
 		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "format/picture.h"
 #include "pipeline/import/import_files.h"
@@ -264,6 +265,27 @@ static void pictures_from_elsewhere_are_not_read(void **state)
 	}
 }
 
+static void a_file_counts_once_however_often_it_is_named(void **state)
+{
+	static struct import_files_counted counted;
+	char path[PATH_MAX];
+	int folder, fds[2];
+	(void)state;
+
+	at(path, "scans/f.ply");
+	put("scans/counted.bin", "twelve bytes");
+	folder = import_files_open_folder(path);
+	CHECK(folder >= 0);
+	for (int i = 0; i < 2; i++)
+		fds[i] = import_files_open_at(folder, "counted.bin");
+	CHECK(fds[0] >= 0 && fds[1] >= 0);
+	CHECK(import_files_count(&counted, fds[0]) == 12);
+	CHECK(import_files_count(&counted, fds[1]) == 0);
+	close(fds[0]);
+	close(fds[1]);
+	close(folder);
+}
+
 /* One picture that a scan names again and again, each time decoded. */
 static void pictures_have_a_limit_together(void **state)
 {
@@ -386,6 +408,7 @@ int main(void)
 		cmocka_unit_test(reads_a_buffer_below_and_one_that_was_copied_beside),
 		cmocka_unit_test(a_missing_file_is_told_as_missing),
 		cmocka_unit_test(pictures_from_elsewhere_are_not_read),
+		cmocka_unit_test(a_file_counts_once_however_often_it_is_named),
 		cmocka_unit_test(pictures_have_a_limit_together),
 		cmocka_unit_test(a_fifo_is_no_scan),
 		cmocka_unit_test(the_name_does_not_choose_another_reader),

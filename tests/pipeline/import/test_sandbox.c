@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +21,8 @@
 #include "pipeline/import/lockdown.h"
 #include "tests/check.h"
 
-static const struct sandbox_options limits = { .timeout_s = 60, .memory_bytes = 1ull << 29 };
-static const struct sandbox_options impatient = { .timeout_s = 1, .memory_bytes = 1ull << 29 };
+static const struct sandbox_options limits = { .limits = { 60, 1ull << 29 } };
+static const struct sandbox_options impatient = { .limits = { 1, 1ull << 29 } };
 
 static int gives_back(void *shared, struct diagnostics *diagnostics)
 {
@@ -36,11 +37,11 @@ static int refuses(void *shared, struct diagnostics *diagnostics)
 	return diagnostics_add(diagnostics, -ENOSPC, NULL, 0, "scan.obj: face 3 is odd");
 }
 
-static int crashes(void *shared, struct diagnostics *diagnostics)
+static int is_killed(void *shared, struct diagnostics *diagnostics)
 {
 	(void)shared;
 	(void)diagnostics;
-	raise(SIGKILL); /* as the kernel does when memory runs out; sanitizers cannot catch it */
+	raise(SIGKILL); /* as the kernel does when memory runs out */
 	return 0;
 }
 
@@ -64,6 +65,16 @@ static int hangs(void *shared, struct diagnostics *diagnostics)
 	(void)shared;
 	(void)diagnostics;
 	while (pause() < 0) /* always: no signal that is handled comes */
+		;
+	return 0;
+}
+
+/* Its processor time ends at about the same time as that of the clock. */
+static int spins(void *shared, struct diagnostics *diagnostics)
+{
+	(void)shared;
+	(void)diagnostics;
+	for (volatile bool spinning = true; spinning;)
 		;
 	return 0;
 }
@@ -105,10 +116,11 @@ static void an_end_of_the_child_is_a_fault_that_names_the_file(void **state)
 		int rc;
 		const char *says;
 	} cases[] = {
-		{ crashes, &limits, -EBADMSG, "crashed" },
+		{ is_killed, &limits, -ENOMEM, "memory" },
 		{ reads_nowhere, &limits, -EBADMSG, "crashed" },
 		{ gives_up, &limits, -EBADMSG, "the reader failed" },
 		{ hangs, &impatient, -ETIMEDOUT, "took over 1 s" },
+		{ spins, &impatient, -ETIMEDOUT, "took over 1 s" },
 		/* "no memory" by its own words, "took over 512 MiB" where it was watched */
 		{ eats_memory, &limits, -ENOMEM, "o" },
 	};
@@ -350,8 +362,9 @@ static void the_child_can_ask_the_kernel_for_nothing_else(void **state)
 
 static int opened; /* times, in the parent */
 
-static int gives_one_file(void *data, const char *name)
+static int gives_one_file(void *data, const char *name, struct sandbox_limits *may)
 {
+	(void)may;
 	opened++;
 	if (strcmp(name, data) != 0)
 		return -EXDEV;
@@ -381,8 +394,7 @@ static int asks(void *shared, struct diagnostics *diagnostics)
 
 static void the_parent_opens_what_it_likes_and_nothing_else(void **state)
 {
-	const struct sandbox_options open_limits = { .timeout_s = 60,
-						     .memory_bytes = 1ull << 29,
+	const struct sandbox_options open_limits = { .limits = { 60, 1ull << 29 },
 						     .open = gives_one_file,
 						     .open_data = "skin.jpg" };
 	int *told = shared_memory_create(4 * sizeof(*told));
@@ -396,6 +408,48 @@ static void the_parent_opens_what_it_likes_and_nothing_else(void **state)
 	CHECK(sandbox_run(asks, told, &limits, "scan.obj", &diagnostics) == 0);
 	CHECK(told[0] == -EACCES && told[1] == -EACCES && opened == 101);
 	shared_memory_destroy(told, 4 * sizeof(*told));
+}
+
+static int gives_more(void *data, const char *name, struct sandbox_limits *may)
+{
+	(void)data;
+	(void)name;
+	may->memory_bytes += 1ull << 30;
+	may->timeout_s += 60;
+	return open("/etc/passwd", O_RDONLY | O_CLOEXEC);
+}
+
+static int needs_more(void *shared, struct diagnostics *diagnostics)
+{
+	const size_t size = 1 << 29;
+	const int fd = sandbox_open("skin.jpg");
+	char *room = malloc(size);
+	int *was_long = shared;
+
+	if (fd < 0 || !room)
+		return diagnostics_add(diagnostics, -ENOMEM, NULL, 0, "scan.obj: no memory");
+	memset(room, 1, size);
+	close(fd);
+	free(room);
+	usleep(1500000);
+	*was_long = 1;
+	return 0;
+}
+
+static void what_the_parent_opens_may_raise_the_limits(void **state)
+{
+	const struct sandbox_options little = { .limits = { 1, sandbox_memory_bytes(1 << 26) },
+						.open = gives_more };
+	int *was_long = shared_memory_create(sizeof(*was_long));
+	struct diagnostics diagnostics = { 0 };
+	int rc;
+	(void)state;
+
+	rc = sandbox_run(needs_more, was_long, &little, "scan.obj", &diagnostics);
+	if (rc < 0)
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(*was_long == 1);
+	shared_memory_destroy(was_long, sizeof(*was_long));
 }
 
 static int reads_foreign_descriptors(void *shared, struct diagnostics *diagnostics)
@@ -434,6 +488,7 @@ int main(void)
 		cmocka_unit_test(seccomp_alone_closes_files_and_network),
 		cmocka_unit_test(the_child_can_ask_the_kernel_for_nothing_else),
 		cmocka_unit_test(the_parent_opens_what_it_likes_and_nothing_else),
+		cmocka_unit_test(what_the_parent_opens_may_raise_the_limits),
 		cmocka_unit_test(of_descriptors_only_the_result_stays_open),
 	};
 
