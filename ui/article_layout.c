@@ -23,8 +23,9 @@
 struct item {
 	const struct article_block *block;
 	int x_px, y_px, width_px, height_px;
-	PangoLayout *layout, *marker; /* owned or NULL */
-	struct bitmap picture;        /* scaled; empty if it has not arrived yet */
+	PangoLayout *layout, *marker;     /* owned or NULL */
+	struct bitmap picture;            /* scaled; empty if it has not arrived yet */
+	double whole_width, whole_height; /* of the picture; 0: not asked for yet */
 };
 
 struct link_area {
@@ -135,41 +136,57 @@ static float space_before_mm(const struct article_block *block, const struct art
 	}
 }
 
-/* Sets the size of a picture's place: from the picture, or from its announced size, or from a
- * guess. */
-static void measure_picture(struct article_layout *article, struct item *item)
+/* Sets the size of a picture's place. */
+static void place_picture(const struct article_layout *article, struct item *item, int x_px,
+			  int width_px)
 {
-	struct found_picture found = { 0 };
-	double width = 4, height = 3;
-	int most_px = article->options.view_px * 3 / 4;
+	const int most_px = article->options.view_px * 3 / 4;
 
-	if (!article->options.pictures.get ||
-	    !article->options.pictures.get(article->options.pictures.data, item->block->text,
-					   &found))
-		found = (struct found_picture){ 0 };
-	if (found.picture) {
-		width = found.picture->width;
-		height = found.picture->height;
-	} else if (found.width_px > 0 && found.height_px > 0) {
-		width = found.width_px;
-		height = found.height_px;
-	}
-	item->height_px = (int)lround(item->width_px * height / width);
+	item->x_px = x_px;
+	item->width_px = width_px;
+	item->height_px = (int)lround(width_px * item->whole_height / item->whole_width);
 	if (item->height_px > most_px) {
-		int narrower = (int)lround(most_px * width / height);
-
+		item->width_px = (int)lround(most_px * item->whole_width / item->whole_height);
+		item->x_px += (width_px - item->width_px) / 2;
 		item->height_px = most_px;
-		item->x_px += (item->width_px - narrower) / 2;
-		item->width_px = narrower;
 	}
 	if (item->height_px < 1)
 		item->height_px = 1;
 	if (item->width_px < 1)
 		item->width_px = 1;
-	if (item->picture.surface && item->picture.width_px == item->width_px &&
-	    item->picture.height_px == item->height_px)
-		return; /* scaled already */
+}
+
+static bool is_scaled(const struct item *item)
+{
+	return item->picture.surface && item->picture.width_px == item->width_px &&
+	       item->picture.height_px == item->height_px;
+}
+
+/* Places a picture by its size, or its announced size, or a guess. Asking for a picture also
+ * requests it, so one that is here is not asked for again. */
+static void measure_picture(struct article_layout *article, struct item *item)
+{
+	const struct picture_source *pictures = &article->options.pictures;
+	const int x_px = item->x_px, width_px = item->width_px;
+	struct found_picture found = { 0 };
+
+	if (item->picture.surface)
+		place_picture(article, item, x_px, width_px);
+	if (is_scaled(item))
+		return;
 	bitmap_finish(&item->picture);
+	if (!pictures->get || !pictures->get(pictures->data, item->block->text, &found))
+		found = (struct found_picture){ 0 };
+	item->whole_width = 4;
+	item->whole_height = 3;
+	if (found.picture) {
+		item->whole_width = found.picture->width;
+		item->whole_height = found.picture->height;
+	} else if (found.width_px > 0 && found.height_px > 0) {
+		item->whole_width = found.width_px;
+		item->whole_height = found.height_px;
+	}
+	place_picture(article, item, x_px, width_px);
 	/* If memory runs out, the place stays empty; the text can still be read. */
 	if (found.picture &&
 	    bitmap_from_picture(&item->picture, found.picture, item->width_px, item->height_px) < 0)

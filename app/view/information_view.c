@@ -14,7 +14,13 @@
 #include "storage/info_tools.h"
 #include "storage/info_tour.h"
 
-enum { PICTURES_MAX = 512, DECODED_MAX = 48, LANGUAGE_BYTES = 16, FOUND_MAX = 100 };
+enum {
+	DECODED_MAX = 48,
+	DECODED_BYTES_MAX = 128 << 20, /* a picture of 4096 pixels a side takes 64 MiB */
+	WANTED_MAX = 128, /* pictures; the model is wanted too, and the list is not endless */
+	LANGUAGE_BYTES = 16,
+	FOUND_MAX = 100,
+};
 
 /* Of what a visitor has asked for, and of the database. */
 enum { ASKED_PRIORITY = MESSAGE_PRIORITY_INDEX / 2, DATABASE_PRIORITY = 350000 };
@@ -24,7 +30,7 @@ struct information_view_picture {
 	bool wanted;
 	bool broken;            /* arrived but cannot be decoded; it is not requested again */
 	struct picture decoded; /* rgba NULL: not loaded */
-	uint32_t used;          /* value of turn at its last use, to evict the oldest */
+	uint64_t used;          /* value of turn at its last use, to evict the oldest */
 };
 
 struct information_view {
@@ -40,10 +46,11 @@ struct information_view {
 	struct page page;              /* the info page; no children until it has arrived */
 	struct buffer page_bytes;      /* the bytes that page.payload points into */
 
-	struct information_view_picture pictures[PICTURES_MAX]; /* indexed like info_picture */
+	struct information_view_picture *pictures; /* owned; indexed like info_picture */
+	uint32_t picture_count;
+	uint64_t turn;           /* counts the uses of pictures */
 	struct hash spoken_hash; /* of the spoken text that was asked for last; zero: none */
 	struct buffer spoken;    /* its bytes; empty: they have not arrived */
-	uint32_t turn;
 };
 
 int information_view_create(struct information_view **out,
@@ -66,9 +73,11 @@ int information_view_create(struct information_view **out,
 
 static void forget_pictures(struct information_view *view)
 {
-	for (size_t i = 0; i < PICTURES_MAX; i++)
+	for (uint32_t i = 0; i < view->picture_count; i++)
 		picture_finish(&view->pictures[i].decoded);
-	memset(view->pictures, 0, sizeof(view->pictures));
+	free(view->pictures);
+	view->pictures = NULL;
+	view->picture_count = 0;
 }
 
 void information_view_destroy(struct information_view *view)
@@ -119,7 +128,7 @@ static bool on_picture(void *data, const char *name, struct found_picture *out)
 		view->info ? info_find_picture(view->info, name) : NULL;
 	struct information_view_picture *own;
 
-	if (!picture || picture_index(view, picture) >= PICTURES_MAX)
+	if (!picture)
 		return false;
 	own = &view->pictures[picture_index(view, picture)];
 	own->used = ++view->turn;
@@ -132,24 +141,38 @@ static bool on_picture(void *data, const char *name, struct found_picture *out)
 	return true;
 }
 
-/* Evicts the picture used longest ago if more than DECODED_MAX are decoded. It is requested again
- * when it is needed. */
-static void let_oldest_picture_go(struct information_view *view)
+static size_t decoded_bytes(const struct information_view_picture *own)
+{
+	return (size_t)4 * own->decoded.width * own->decoded.height;
+}
+
+/* Returns the picture used longest ago if more are decoded than may be, else NULL. */
+static struct information_view_picture *find_one_too_many(const struct information_view *view)
 {
 	struct information_view_picture *oldest = NULL;
 	uint32_t count = 0;
+	size_t bytes = 0;
 
-	for (size_t i = 0; i < PICTURES_MAX; i++) {
+	for (uint32_t i = 0; i < view->picture_count; i++) {
 		struct information_view_picture *own = &view->pictures[i];
 
 		if (!own->decoded.rgba)
 			continue;
 		count++;
+		bytes += decoded_bytes(own);
 		if (!oldest || own->used < oldest->used)
 			oldest = own;
 	}
-	if (count > DECODED_MAX)
-		picture_finish(&oldest->decoded);
+	return count > DECODED_MAX || (count > 1 && bytes > DECODED_BYTES_MAX) ? oldest : NULL;
+}
+
+/* They are requested again when they are needed. */
+static void let_oldest_pictures_go(struct information_view *view)
+{
+	struct information_view_picture *own;
+
+	while ((own = find_one_too_many(view)))
+		picture_finish(&own->decoded);
 }
 
 static void decode_picture(struct information_view_picture *own, const char *name,
@@ -173,7 +196,7 @@ static bool give_picture(struct information_view *view, struct hash hash, struct
 
 	if (!view->info || !view->overlay)
 		return false;
-	for (uint32_t i = 0; i < info_picture_count(view->info) && i < PICTURES_MAX; i++) {
+	for (uint32_t i = 0; i < view->picture_count; i++) {
 		const struct info_picture *picture = info_picture(view->info, i);
 		struct information_view_picture *own = &view->pictures[i];
 
@@ -181,9 +204,10 @@ static bool give_picture(struct information_view *view, struct hash hash, struct
 			continue;
 		ours = true;
 		own->wanted = false;
+		own->used = ++view->turn; /* the new one is not the one to go */
 		if (!own->decoded.rgba)
 			decode_picture(own, picture->name, object);
-		let_oldest_picture_go(view);
+		let_oldest_pictures_go(view);
 		overlay_picture_arrived(view->overlay, picture->name);
 	}
 	return ours;
@@ -295,8 +319,18 @@ static void forget_database(struct information_view *view)
 {
 	overlay_destroy(view->overlay);
 	view->overlay = NULL;
+	forget_pictures(view);
 	info_close(view->info);
 	view->info = NULL;
+}
+
+static int make_pictures(struct information_view *view)
+{
+	const uint32_t count = info_picture_count(view->info);
+
+	view->pictures = calloc((size_t)count + 1, sizeof(*view->pictures));
+	view->picture_count = view->pictures ? count : 0;
+	return view->pictures ? 0 : -ENOMEM;
 }
 
 /* -ENOMEM: as if it had not arrived. */
@@ -311,10 +345,14 @@ static int give_database(struct information_view *view, struct bytes object)
 				  "content bug: the release's information database is damaged");
 		return rc;
 	}
-	info_close(view->info);
-	view->info = info;
 	forget_pictures(view);
 	forget_spoken(view);
+	info_close(view->info);
+	view->info = info;
+	if (make_pictures(view) < 0) {
+		forget_database(view);
+		return -ENOMEM;
+	}
 	snprintf(view->language, sizeof(view->language), "%s",
 		 info_nearest_language(info, view->language));
 	rc = create_overlay(view);
@@ -403,6 +441,14 @@ static uint32_t add_want(const struct information_view *view, struct hash hash,
 	return count;
 }
 
+/* What was asked for long ago, such as a row that scrolled by, is wanted when it is asked for
+ * again. */
+static bool is_wanted(const struct information_view *view,
+		      const struct information_view_picture *own)
+{
+	return own->wanted && view->turn - own->used < WANTED_MAX;
+}
+
 uint32_t information_view_wants(const struct information_view *view, struct message_want *out,
 				uint32_t most)
 {
@@ -424,8 +470,8 @@ uint32_t information_view_wants(const struct information_view *view, struct mess
 		out[count++] = database_want(view);
 	if (!hash_is_zero(view->spoken_hash) && view->spoken.size == 0)
 		count = add_want(view, view->spoken_hash, out, count, most);
-	for (uint32_t i = 0; view->info && i < info_picture_count(view->info); i++)
-		if (i < PICTURES_MAX && view->pictures[i].wanted)
+	for (uint32_t i = 0; i < view->picture_count; i++)
+		if (is_wanted(view, &view->pictures[i]))
 			count = add_want(view, info_picture(view->info, i)->hash, out, count, most);
 	return count;
 }

@@ -11,16 +11,22 @@
 #include "tests/check.h"
 #include "ui/overlay_state.h"
 
-enum { PICTURES = 50, PICTURES_KEPT = 48 };
+enum {
+	PICTURES = 50, /* of the page */
+	PICTURES_MOST = 600,
+	PICTURES_KEPT = 48,
+	PICTURES_WANTED = 128,
+};
 
 static char folder[64];
 
 /* An info page, what it names, and the root page that names it. */
 struct release {
 	struct info_built built;
-	struct bytes objects[1 + PICTURES]; /* the database, then the pictures */
-	struct buffer pictures[PICTURES], page;
-	struct page_child children[1 + PICTURES], root_children[ROOT_CHILD_COUNT];
+	struct bytes objects[1 + PICTURES_MOST]; /* the database, then the pictures */
+	struct buffer pictures[PICTURES_MOST], page;
+	uint32_t picture_count;
+	struct page_child children[1 + PICTURES_MOST], root_children[ROOT_CHILD_COUNT];
 	struct page root;
 };
 
@@ -37,28 +43,32 @@ static void write_text(const char *name, const char *text)
 	write_file(name, (struct bytes){ (const uint8_t *)text, strlen(text) });
 }
 
-static void write_picture(uint32_t n)
+static void write_picture(uint32_t n, uint32_t width, uint32_t height)
 {
-	uint8_t rgba[4] = { (uint8_t)n, 10, 20, 255 };
-	const struct picture picture = { 1, 1, rgba };
+	struct picture picture = { width, height, calloc((size_t)width * height, 4) };
 	struct buffer png;
 	char name[64];
 
-	buffer_init(&png, 1 << 20);
+	CHECK(picture.rgba);
+	picture.rgba[0] = (uint8_t)n;
+	picture.rgba[1] = (uint8_t)(n >> 8);
+	picture.rgba[3] = 255;
+	buffer_init(&png, 64 << 20);
 	CHECK(picture_encode_png(&png, &picture) == 0);
 	snprintf(name, sizeof(name), "pictures/%02u.png", n);
 	write_file(name, buffer_bytes(&png));
 	buffer_finish(&png);
+	picture_finish(&picture);
 }
 
-static void write_page_of_pictures(void)
+static void write_page_of_pictures(uint32_t count, uint32_t width, uint32_t height)
 {
 	char html[PICTURES * 64] = "<h1>Tower</h1>";
 
-	for (uint32_t n = 0; n < PICTURES; n++) {
+	for (uint32_t n = 0; n < count; n++) {
 		const size_t used = strlen(html);
 
-		write_picture(n);
+		write_picture(n, width, height);
 		snprintf(html + used, sizeof(html) - used, "<p><img src=\"pictures/%02u.png\"></p>",
 			 n);
 	}
@@ -76,7 +86,7 @@ static void write_folder(void)
 		   "{\"id\": \"spot\", \"title\": {\"en\": \"Spot\"}, \"page\": false,\n"
 		   " \"anchor\": [5, 0, 0]}\n"
 		   "]}\n");
-	write_page_of_pictures();
+	write_page_of_pictures(PICTURES, 1, 1);
 }
 
 static int set_up(void **state)
@@ -119,17 +129,17 @@ static void make_release(struct release *release)
 						    .languages = languages,
 						    .language_count = 2,
 						    .diagnostics = &diagnostics };
-	const struct page page = { .kind = PAGE_INFO,
-				   .child_count = 1 + PICTURES,
-				   .children = release->children };
+	struct page page = { .kind = PAGE_INFO, .children = release->children };
 	char path[200];
 
 	memset(release, 0, sizeof(*release));
 	CHECK(info_build(&release->built, &options) == 0);
-	CHECK(release->built.file_count == PICTURES);
+	CHECK(release->built.file_count <= PICTURES_MOST);
+	release->picture_count = release->built.file_count;
+	page.child_count = 1 + release->picture_count;
 	name_object(release, 0, buffer_bytes(&release->built.database));
-	for (uint32_t n = 0; n < PICTURES; n++) {
-		buffer_init(&release->pictures[n], 1 << 20);
+	for (uint32_t n = 0; n < release->picture_count; n++) {
+		buffer_init(&release->pictures[n], 64 << 20);
 		snprintf(path, sizeof(path), "%s/%s", folder, release->built.files[n].name);
 		CHECK(buffer_read_file(&release->pictures[n], path) == 0);
 		name_object(release, 1 + n, buffer_bytes(&release->pictures[n]));
@@ -148,7 +158,7 @@ static void make_release(struct release *release)
 static void finish_release(struct release *release)
 {
 	info_built_finish(&release->built);
-	for (uint32_t n = 0; n < PICTURES; n++)
+	for (uint32_t n = 0; n < release->picture_count; n++)
 		buffer_finish(&release->pictures[n]);
 	buffer_finish(&release->page);
 }
@@ -163,12 +173,12 @@ static struct information_view *begin(const struct release *release, const char 
 	return view;
 }
 
-static struct message_want wants[1 + PICTURES];
+static struct message_want wants[1 + PICTURES_MOST];
 
 /* Fills `wants` with what the view needs, and returns how many there are. */
 static uint32_t count_wants(struct information_view *view)
 {
-	return information_view_wants(view, wants, 1 + PICTURES);
+	return information_view_wants(view, wants, ARRAY_COUNT(wants));
 }
 
 static bool give_page(struct information_view *view, const struct release *release)
@@ -359,6 +369,128 @@ static void lets_pictures_go_and_asks_for_them_again(void **state)
 	finish_release(&release);
 }
 
+/* Gives what is wanted first. Returns false if nothing is. */
+static bool give_wanted(struct information_view *view, const struct release *release)
+{
+	uint32_t child = 0;
+
+	if (count_wants(view) == 0)
+		return false;
+	while (!hash_equal(release->children[child].hash, wants[0].hash))
+		child++;
+	return give(view, release, child);
+}
+
+static void a_page_of_many_pictures_comes_to_rest(void **state)
+{
+	struct release release;
+	struct information_view *view;
+	uint32_t given = 0;
+
+	(void)state;
+	make_release(&release);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_open_page(view, 0));
+	while (given <= PICTURES && give_wanted(view, &release))
+		given++;
+	CHECK(given == PICTURES);
+	information_view_destroy(view);
+	finish_release(&release);
+}
+
+static void large_pictures_go_sooner(void **state)
+{
+	enum { LARGE = 5, LARGE_KEPT = 4 }; /* of 32 MiB each */
+	struct release release;
+	struct information_view *view;
+
+	(void)state;
+	write_page_of_pictures(LARGE, 4096, 2048);
+	make_release(&release);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	CHECK(information_view_open_page(view, 0));
+	for (uint32_t n = 0; n < LARGE; n++)
+		CHECK(give_wanted(view, &release));
+	CHECK(count_wants(view) == 0);
+	CHECK(information_view_open_page(view, 0));
+	CHECK(count_wants(view) == LARGE - LARGE_KEPT);
+	information_view_destroy(view);
+	finish_release(&release);
+}
+
+/* Many parts, each with a picture of its own. */
+static void write_parts_with_pictures(uint32_t count)
+{
+	struct buffer json;
+
+	buffer_init(&json, 1 << 20);
+	buffer_put_text(&json, "{\"parts\": [\n");
+	for (uint32_t n = 0; n < count; n++) {
+		write_picture(n, 1, 1);
+		buffer_print(
+			&json,
+			"%s{\"id\": \"part%u\", \"title\": {\"en\": \"Part\"}, \"page\": false,\n"
+			" \"anchor\": [5, 0, 0], \"thumbnail\": \"pictures/%02u.png\"}\n",
+			n > 0 ? "," : "", n, n);
+	}
+	buffer_put_text(&json, "]}\n");
+	CHECK(json.error == 0);
+	write_file("parts.json", buffer_bytes(&json));
+	buffer_finish(&json);
+}
+
+/* The card asks for the picture. */
+static void look_at(struct information_view *view, uint32_t part)
+{
+	struct overlay *overlay = information_view_overlay(view);
+	static int64_t now_ms;
+
+	overlay_show_card(overlay, (int)part);
+	overlay_update(overlay, now_ms += 16);
+}
+
+static void a_release_may_have_any_number_of_pictures(void **state)
+{
+	struct release release;
+	struct information_view *view;
+
+	(void)state;
+	write_parts_with_pictures(PICTURES_MOST);
+	make_release(&release);
+	CHECK(release.picture_count == PICTURES_MOST);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	for (uint32_t n = 0; n < PICTURES_MOST; n++) {
+		look_at(view, n);
+		CHECK(give_wanted(view, &release) && count_wants(view) == 0);
+	}
+	information_view_destroy(view);
+	finish_release(&release);
+}
+
+/* Without a network they would take all room in the list of what the fetcher is asked for. */
+static void what_was_looked_at_long_ago_is_not_wanted(void **state)
+{
+	struct release release;
+	struct information_view *view;
+
+	(void)state;
+	write_parts_with_pictures(2 * PICTURES_WANTED);
+	make_release(&release);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	for (uint32_t n = 0; n < 2 * PICTURES_WANTED; n++)
+		look_at(view, n);
+	CHECK(count_wants(view) == PICTURES_WANTED);
+	look_at(view, 0); /* wanted again */
+	CHECK(give_wanted(view, &release));
+	CHECK(count_wants(view) < PICTURES_WANTED);
+	information_view_destroy(view);
+	finish_release(&release);
+}
+
 #define IN_A_FOLDER(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
 
 int main(void)
@@ -371,6 +503,10 @@ int main(void)
 		IN_A_FOLDER(does_not_ask_again_for_what_came_damaged),
 		IN_A_FOLDER(a_damaged_picture_is_not_asked_for_again),
 		IN_A_FOLDER(lets_pictures_go_and_asks_for_them_again),
+		IN_A_FOLDER(a_page_of_many_pictures_comes_to_rest),
+		IN_A_FOLDER(large_pictures_go_sooner),
+		IN_A_FOLDER(a_release_may_have_any_number_of_pictures),
+		IN_A_FOLDER(what_was_looked_at_long_ago_is_not_wanted),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
