@@ -120,6 +120,7 @@ int quads_upload(struct quads *quads, const struct quads_pixels *pixels)
 			.height_px = pixels->height_px,
 			.format = quads->format,
 			.filter = GL_LINEAR,
+			.large = true, /* such as a page over a whole wall of panels */
 			.pixels = rows,
 		};
 		int rc;
