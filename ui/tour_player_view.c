@@ -2,7 +2,7 @@
 #include "ui/tour_player_view.h"
 
 #include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "ui/icon.h"
@@ -22,10 +22,29 @@ void tour_player_view_init(struct tour_player_view *view, uint32_t *next_id)
 
 void tour_player_view_finish(struct tour_player_view *view)
 {
+	free(view->caption);
 	sprites_finish(&view->sprite, 1);
 }
 
 /* ---- state ---- */
+
+static bool says(const struct tour_player_view *view, const struct overlay_tour_state *state)
+{
+	return view->caption && view->tour == state->tour &&
+	       strcmp(view->caption, state->caption) == 0;
+}
+
+/* Without memory the words stay as they were. */
+static bool keep_caption(struct tour_player_view *view, const char *caption)
+{
+	char *copy = strdup(caption);
+
+	if (!copy)
+		return false;
+	free(view->caption);
+	view->caption = copy;
+	return true;
+}
 
 bool tour_player_view_set(struct tour_player_view *view, const struct overlay_tour_state *state)
 {
@@ -34,7 +53,7 @@ bool tour_player_view_set(struct tour_player_view *view, const struct overlay_to
 	view->runs = state != NULL;
 	if (!state)
 		return changed;
-	if (strcmp(view->caption, state->caption) != 0 || view->tour != state->tour) {
+	if (!says(view, state) && keep_caption(view, state->caption)) {
 		view->fade.alpha = 0; /* it has another size too: fade in again, do not jump */
 		changed = true;
 	}
@@ -44,7 +63,6 @@ bool tour_player_view_set(struct tour_player_view *view, const struct overlay_to
 	view->stop = state->stop;
 	view->stop_count = state->stop_count;
 	view->paused = state->paused;
-	snprintf(view->caption, sizeof(view->caption), "%s", state->caption);
 	return changed;
 }
 
@@ -66,8 +84,8 @@ static PangoLayout *lay_out_caption(const struct tour_player_view *view,
 		      screen_px(screen, DOTS_MM) - padding;
 
 	for (int lines = LINES_MAX;; lines--) {
-		PangoLayout *layout =
-			theme_layout(screen->theme, TEXT_CAPTION, view->caption, room_px);
+		PangoLayout *layout = theme_layout(screen->theme, TEXT_CAPTION,
+						   view->caption ? view->caption : "", room_px);
 
 		theme_limit_lines(layout, room_px > 1 ? room_px : 1, lines);
 		pango_layout_get_pixel_size(layout, NULL, height_px);

@@ -9,14 +9,12 @@
 #include "ui/overlay_data.h"
 #include "ui/screen.h"
 
-enum { TOUR_CAPTION_BYTES = 1024 };
-
 struct tour_player_view {
 	struct fade fade; /* on: it is visible */
 	bool runs;        /* a tour runs, whether it is visible or not */
 	bool paused, dirty;
 	int tour, stop, stop_count;
-	char caption[TOUR_CAPTION_BYTES];
+	char *caption; /* owned; NULL: none yet */
 	struct sprite sprite;
 };
 

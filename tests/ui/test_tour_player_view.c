@@ -47,10 +47,35 @@ static void it_follows_the_tour_and_pauses(void **state)
 	theme_finish(&theme);
 }
 
+/* A caption is as long as its author likes; the same words do not fade in again. */
+static void long_words_come_to_rest(void **state)
+{
+	char words[3000];
+	struct theme theme;
+	const struct screen screen = make_screen(&theme, "en");
+	const struct overlay_tour_state tour = { .stop_count = 3, .caption = words };
+	struct tour_player_view view;
+	uint32_t next_id = 0;
+
+	(void)state;
+	for (size_t i = 0; i + 1 < sizeof(words); i++)
+		words[i] = i % 8 == 7 ? ' ' : 'a';
+	words[sizeof(words) - 1] = 0;
+	tour_player_view_init(&view, &next_id);
+	CHECK(tour_player_view_set(&view, &tour));
+	settle(&view, &screen);
+	CHECK(!tour_player_view_set(&view, &tour) && view.fade.alpha == 1);
+	words[sizeof(words) - 2] = 'b'; /* other words, at their end */
+	CHECK(tour_player_view_set(&view, &tour));
+	tour_player_view_finish(&view);
+	theme_finish(&theme);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_follows_the_tour_and_pauses),
+		cmocka_unit_test(long_words_come_to_rest),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
