@@ -2,6 +2,8 @@
  * lifts. */
 #include "input/contacts.h"
 
+#include "base/log.h"
+
 static void to_panel(const struct contacts *contacts, const float m[6], const struct touch_raw *raw,
 		     float *x_px, float *y_px)
 {
@@ -83,12 +85,25 @@ static void lift(struct contacts *contacts, struct contact_slot *slot, enum touc
 static void put_down(struct contacts *contacts, const float matrix[6], struct contact_slot *slot,
 		     const struct touch_raw *raw, int64_t time_us)
 {
-	*slot = (struct contact_slot){ .id = raw->id, .down = true, .contact = -1 };
+	*slot = (struct contact_slot){
+		.id = raw->id, .down = true, .contact = -1, .down_us = time_us
+	};
 	to_panel(contacts, matrix, raw, &slot->x_px, &slot->y_px);
 	if (is_at_edge(contacts, slot->x_px, slot->y_px) || is_palm(contacts, raw))
 		return;
 	slot->contact = take_contact(contacts);
 	report(contacts, TOUCH_DOWN, slot, time_us);
+}
+
+static bool lies_there(const struct contact_slot *slot, int64_t time_us)
+{
+	const bool lies = slot->contact >= 0 &&
+			  time_us - slot->down_us > (int64_t)CONTACT_LONGEST_S * 1000000;
+
+	if (lies)
+		log_info("input", "what lies on the glass for %d s is ignored until it lifts",
+			 CONTACT_LONGEST_S);
+	return lies;
 }
 
 static void move(struct contacts *contacts, const float matrix[6], struct contact_slot *slot,
@@ -97,7 +112,7 @@ static void move(struct contacts *contacts, const float matrix[6], struct contac
 	float x_px, y_px;
 
 	to_panel(contacts, matrix, raw, &x_px, &y_px);
-	if (is_palm(contacts, raw)) {
+	if (is_palm(contacts, raw) || lies_there(slot, time_us)) {
 		lift(contacts, slot, TOUCH_CANCEL, time_us);
 		return;
 	}

@@ -7,6 +7,9 @@
 #include "input/touch_device.h"
 #include "input/touch_event.h"
 
+/* No finger stays on the glass for so long: what does is a coin, a drop, or dirt on the frame. */
+enum { CONTACT_LONGEST_S = 180 };
+
 struct contacts {
 	int width_px, height_px, rotation_deg; /* as in struct touch_options */
 	float edge_px, palm_px;
@@ -17,15 +20,16 @@ struct contacts {
 
 /* The state of a slot of a device, on the panel. */
 struct contact_slot {
-	int id;      /* the device's id of the finger, while down */
-	bool down;   /* down, whether reported or ignored */
-	int contact; /* number it is reported as; -1: ignored until it lifts */
+	int id;          /* the device's id of the finger, while down */
+	bool down;       /* down, whether reported or ignored */
+	int contact;     /* number it is reported as; -1: ignored until it lifts */
+	int64_t down_us; /* when it came down */
 	float x_px, y_px;
 };
 
 /* Compares a frame of a device with the known state of its slots, updates them and calls event for
  * each change. matrix is the calibration. A changed id means that the lift of the previous finger
- * was lost. */
+ * was lost. What has been down for CONTACT_LONGEST_S is cancelled, and ignored until it lifts. */
 void contacts_take(struct contacts *contacts, struct contact_slot slots[TOUCH_SLOTS_MAX],
 		   const struct touch_raw raws[TOUCH_SLOTS_MAX], const float matrix[6],
 		   int64_t time_us);
