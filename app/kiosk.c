@@ -250,6 +250,7 @@ static void connect_visit(struct kiosk *kiosk)
 		     &(struct visitor_env){ .shown = shown,
 					    .eye = &kiosk->eye,
 					    .tours = &kiosk->tours,
+					    .listening = &kiosk->listening,
 					    .tools = &kiosk->tools,
 					    .back = &kiosk->back,
 					    .counting = &kiosk->counting,

@@ -39,6 +39,14 @@ static bool is_reading(const struct visitor *visitor)
 			   tools_are_used(visitor->env.tools));
 }
 
+/* Returns whether the visitor watches a tour or hears a text: both end by themselves. */
+static bool is_led(const struct visitor *visitor)
+{
+	const struct tour *tour = &visitor->env.tours->tour;
+
+	return (tour_runs(tour) && !tour->loops) || visitor->env.listening->speaks;
+}
+
 /* ---- between two visitors */
 
 static void reset_overlay(const struct visitor *visitor, struct overlay *overlay)
@@ -143,12 +151,11 @@ void visitor_turn(struct visitor *visitor, bool is_dark)
 {
 	const int64_t now_ms = clock_now_ms();
 	const enum presence_state before = visitor->presence.state;
-	const struct tour *tour = &visitor->env.tours->tour;
 	int asked_s;
 
 	if (is_off(visitor))
 		return;
-	if (!tour->loops && tour_runs(tour) && !is_dark)
+	if (is_led(visitor) && !is_dark)
 		presence_keep(&visitor->presence, now_ms);
 	presence_step(&visitor->presence, now_ms, is_reading(visitor));
 	log_state(visitor);

@@ -7,6 +7,7 @@
 #include "app/visit/attract_camera.h"
 #include "app/visit/back.h"
 #include "app/visit/counting.h"
+#include "app/visit/listening.h"
 #include "app/visit/presence.h"
 #include "app/visit/tools.h"
 #include "app/visit/tour_player.h"
@@ -22,6 +23,7 @@ struct visitor_env {
 	const struct exhibit *shown;
 	struct eye *eye;
 	struct tour_player *tours;
+	const struct listening *listening;
 	struct tools *tools;
 	struct back *back;
 	struct counting *counting;
@@ -49,7 +51,7 @@ void visitor_init(struct visitor *visitor, const struct visitor_options *options
 		  const struct visitor_env *env);
 /* Called once per turn of the loop: asks whether the visitor is still there, resets everything
  * after a visit, and starts the tour or the attract camera. is_dark: the panel is off or missing,
- * so a tour on it is no sign of a visitor. */
+ * so a tour on it is no sign of a visitor, nor is a spoken text. */
 void visitor_turn(struct visitor *visitor, bool is_dark);
 /* Returns in how many milliseconds visitor_turn has something to do by time alone; -1: never. */
 int visitor_wait_ms(const struct visitor *visitor);

@@ -206,6 +206,39 @@ static void is_not_offered_where_nothing_can_be_heard(void **state)
 	CHECK(page()->is_spoken);
 }
 
+static void touch(void)
+{
+	visitor_take_touch(&visit.visitor, &(struct touch_event){ .phase = TOUCH_DOWN });
+	visitor_take_touch(&visit.visitor, &(struct touch_event){ .phase = TOUCH_UP });
+}
+
+/* Who cannot read does not see the question either. */
+static void who_listens_is_not_asked(void **state)
+{
+	(void)state;
+	touch();
+	listen();
+	for (int s = 0; s < 600; s++) {
+		after(S);
+		CHECK(visit.visitor.presence.state == PRESENCE_SOMEBODY);
+	}
+	fake.state = (struct speaker_state){ 0 };
+	listening_turn(&visit.listening);
+	after(179 * S);
+	CHECK(visit.visitor.presence.state == PRESENCE_SOMEBODY);
+	after(S);
+	CHECK(visit.visitor.presence.state == PRESENCE_ASKED);
+}
+
+static void a_text_that_does_not_come_keeps_nobody(void **state)
+{
+	(void)state;
+	touch();
+	do_action(OVERLAY_LISTEN, 0);
+	after(180 * S);
+	CHECK(visit.visitor.presence.state == PRESENCE_ASKED);
+}
+
 #define LISTENED(test) cmocka_unit_test_setup_teardown(test, begin, end)
 
 int main(void)
@@ -216,6 +249,8 @@ int main(void)
 		LISTENED(ends_by_its_button_or_any_other),
 		LISTENED(ends_with_its_page),
 		LISTENED(is_not_offered_where_nothing_can_be_heard),
+		LISTENED(who_listens_is_not_asked),
+		LISTENED(a_text_that_does_not_come_keeps_nobody),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -131,6 +131,7 @@ static inline void begin_visitor(const char *language, bool off)
 		&(struct visitor_env){ .shown = &visit.shown,
 				       .eye = &visit.eye,
 				       .tours = &visit.tours,
+				       .listening = &visit.listening,
 				       .tools = &visit.tools,
 				       .back = &visit.back,
 				       .counting = &visit.counting,
