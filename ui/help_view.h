@@ -8,8 +8,9 @@
 #include "ui/screen.h"
 
 enum {
-	HELP_FINGERS = 3,    /* one turns, two zoom */
-	HELP_MOVES_MS = 6000 /* then they stop, and no more frames are drawn for them */
+	HELP_FINGERS = 3,     /* one turns, two zoom */
+	HELP_MOVES_MS = 6000, /* then they stop, and no more frames are drawn for them */
+	HELP_NEW_MS = 500,    /* a tap that began before the help came takes at most so long */
 };
 
 struct help_view {

@@ -572,7 +572,9 @@ struct overlay_action overlay_tap(const struct overlay *overlay, float x_px, flo
 	}
 	if (overlay->help.fade.on &&
 	    rect_holds(help_view_rect(&overlay->help, &screen), x_px, y_px)) {
-		action.kind = OVERLAY_HELP;
+		/* Who touched the invitation made the help come under the same finger. */
+		action.kind =
+			overlay->help.shown_ms < HELP_NEW_MS ? OVERLAY_SWALLOWED : OVERLAY_HELP;
 		return action;
 	}
 	action.part = callouts_view_part_at(&overlay->callouts, &screen, x_px, y_px);

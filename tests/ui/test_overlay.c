@@ -587,9 +587,11 @@ static void the_invitation_takes_the_place_of_the_help(void **state)
 	overlay_invite(overlay, true);
 	settle(overlay);
 	CHECK(!overlay_help(overlay) && overlay->invitation.fade.alpha == 1);
-	overlay_invite(overlay, false); /* somebody came */
+	overlay_invite(overlay, false);                                     /* somebody came */
+	CHECK(tap(overlay, help_place(overlay)).kind == OVERLAY_SWALLOWED); /* by this touch */
 	settle(overlay);
 	CHECK(overlay_help(overlay) && overlay->invitation.fade.alpha == 0);
+	CHECK(tap(overlay, help_place(overlay)).kind == OVERLAY_HELP);
 	overlay_destroy(overlay);
 	picture_finish(&album.picture);
 }
