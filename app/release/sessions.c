@@ -358,6 +358,8 @@ void sessions_synced(struct sessions *sessions, bool done)
 			 "the new release could not be stored on the disk; the current one stays");
 		return;
 	}
+	if (visitor_left_ms(sessions) > 0)
+		return; /* somebody came meanwhile */
 	coming->remembering = true;
 	updater_remember(sessions->options.updater, coming->exhibit.root);
 }

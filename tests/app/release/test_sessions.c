@@ -24,6 +24,7 @@ static struct {
 	int remembers; /* requests to store a release */
 	struct hash remembered;
 	int syncs;
+	int visitor_left_ms;
 	int fds[4]; /* of the scenes */
 	size_t fd_count;
 } museum;
@@ -278,10 +279,10 @@ bool wants_say(struct wants *list)
 
 /* ---- the kiosk */
 
-static int no_visitor(void *data)
+static int visitor_left_ms(void *data)
 {
 	(void)data;
-	return 0;
+	return museum.visitor_left_ms;
 }
 
 static void on_changed(void *data, const struct exhibit_change *change)
@@ -295,7 +296,7 @@ static int set_up(void **state)
 	const struct sessions_options options = { .wants = &wants,
 						  .eye = &eye,
 						  .redraw = &redraw,
-						  .visitor_left_ms = no_visitor,
+						  .visitor_left_ms = visitor_left_ms,
 						  .changed = on_changed };
 
 	(void)state;
@@ -364,6 +365,25 @@ static void shows_the_next_once_it_is_complete_and_stored(void **state)
 	CHECK(hash_equal(sessions.shown.exhibit.root, second));
 	after(60 * MINUTE);
 	CHECK(museum.remembers == 2 && museum.syncs == 2);
+}
+
+static void waits_for_who_came_while_it_was_stored(void **state)
+{
+	(void)state;
+	show_first();
+	begin(second);
+	root_arrives(second);
+	CHECK(museum.syncs == 2);
+	museum.visitor_left_ms = 75 * S;
+	sessions_synced(&sessions, true);
+	CHECK(museum.remembers == 1);
+	after(sessions_wait_ms(&sessions));
+	CHECK(museum.syncs == 2 && sessions_wait_ms(&sessions) == 75 * S);
+	museum.visitor_left_ms = 0;
+	after(75 * S);
+	CHECK(museum.syncs == 3);
+	sessions_synced(&sessions, true);
+	CHECK(museum.remembers == 2 && hash_equal(museum.remembered, second));
 }
 
 static void tries_again_to_store_the_next_where_the_disk_is_full(void **state)
@@ -445,6 +465,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		MUSEUM(shows_the_next_once_it_is_complete_and_stored),
+		MUSEUM(waits_for_who_came_while_it_was_stored),
 		MUSEUM(tries_again_to_store_the_next_where_the_disk_is_full),
 		MUSEUM(tries_again_to_store_what_is_shown_where_the_disk_is_full),
 		MUSEUM(shows_what_there_is_of_the_next_after_a_minute),
