@@ -27,6 +27,8 @@ enum { SAMPLER_VERSION = 10, CHOICES_VERSION = 2, JOBS_MAX = 64 };
 
 /* Size of the grid's box, in multiples of the model's: docs/samples.md. */
 static const float grid_reach = 1.5f;
+/* No side of it is shorter, in distances of points. */
+static const float least_side = 0.5f;
 /* A point is inside solid matter if its winding number is above winding_solid. For scans that are
  * open towards the point: if more than the share backs_solid of what it sees are back faces. */
 static const double winding_solid = 0.5, backs_solid = 0.5;
@@ -71,26 +73,20 @@ void sampler_grid(struct sample_grid *out, const float low_m[3], const float hig
 	spacing = longest / (float)(points - 1);
 	*out = (struct sample_grid){ .level_count = sampler_levels(face_px) };
 	for (int i = 0; i < 3; i++) {
+		const bool on_ground = i == 2 && !below_ground;
 		float middle = (low_m[i] + high_m[i]) / 2,
 		      half = grid_reach / 2 * (high_m[i] - low_m[i]);
-		float from = middle - half, side = 2 * half;
+		/* From its own plane nobody sees a flat wall. */
+		float side = fmaxf(on_ground ? middle + half - low_m[i] : 2 * half,
+				   least_side * spacing);
 		uint32_t steps = (uint32_t)lrintf(side / spacing);
 
-		if (i == 2 && !below_ground) {
-			/* The lowest layer is half a step above the ground, where visitors' eyes
-			 * would be. */
-			side = middle + half - low_m[i];
-			steps = (uint32_t)lrintf(side / spacing);
-			steps = steps < 1 ? 1 : steps;
-			out->spacing_m[i] = fmaxf(side / (float)steps, spacing * 0.05f);
-			out->origin_m[i] = low_m[i] + out->spacing_m[i] / 2;
-			out->count[i] = steps;
-			continue;
-		}
 		steps = steps < 1 ? 1 : steps;
-		out->spacing_m[i] = fmaxf(side / (float)steps, spacing * 0.05f);
-		out->origin_m[i] = from;
-		out->count[i] = steps + 1;
+		out->spacing_m[i] = side / (float)steps;
+		/* The lowest layer is half a step above the ground, where visitors' eyes would
+		 * be. */
+		out->origin_m[i] = on_ground ? low_m[i] + out->spacing_m[i] / 2 : middle - side / 2;
+		out->count[i] = on_ground ? steps : steps + 1;
 	}
 }
 
