@@ -24,14 +24,14 @@ struct lattice_mesh {
 	struct lattice lattice;
 	uint32_t vertex_count, triangle_count;
 	struct lattice_vertex *vertices; /* owned; no two at one place, all are used */
-	uint32_t (*triangles)[3];        /* owned; three different vertices each, no duplicates */
+	uint32_t (*triangles)[3]; /* owned; three different vertices each, no two with the same */
 };
 
 /* What was repaired or tolerated in the scan. */
 struct lattice_counts {
 	uint32_t merged_vertices;      /* they lay at the place of another vertex */
 	uint32_t degenerate_triangles; /* dropped: fewer than three places */
-	uint32_t duplicate_triangles;  /* dropped: the same three places in the same order */
+	uint32_t duplicate_triangles;  /* dropped: the same three places, on whichever side */
 	uint32_t border_edges;  /* more triangles use them in one direction than in the other */
 	uint32_t crowded_edges; /* used by more than two triangles; kept */
 };

@@ -16,7 +16,7 @@
 #include "pipeline/hierarchy/block_build.h"
 
 /* Raise BUILD_VERSION whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 12, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
+enum { BUILD_VERSION = 13, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 

@@ -218,6 +218,7 @@ static struct mesh two_triangles_and_rubbish(void)
 	shape_triangle(&mesh, 0, 1, 2);
 	shape_triangle(&mesh, 2, 4, 3);
 	shape_triangle(&mesh, 1, 2, 0); /* the first again */
+	shape_triangle(&mesh, 0, 2, 1); /* and from its other side */
 	shape_triangle(&mesh, 1, 4, 2); /* two corners at one place */
 	return mesh;
 }
@@ -232,7 +233,7 @@ static void the_lattice_merges_drops_and_counts(void **state)
 	CHECK(on_lattice(&out, &counts, &mesh) == 0);
 	CHECK(out.vertex_count == 4 && out.triangle_count == 2);
 	CHECK(counts.merged_vertices == 1 && counts.degenerate_triangles == 1);
-	CHECK(counts.duplicate_triangles == 1 && counts.border_edges == 4);
+	CHECK(counts.duplicate_triangles == 2 && counts.border_edges == 4);
 	CHECK(counts.crowded_edges == 0);
 	CHECK(out.vertices[3].position[0] == 65535 && out.vertices[3].position[1] == 65535);
 	CHECK(fabs(out.lattice.step_m * 65535.0 - 1.0) < 1e-9);

@@ -175,6 +175,27 @@ static void pebbles_vanish_but_something_stays(void **state)
 	subject_finish(&subject);
 }
 
+/* Each face of a leaf or a banner is often there twice, once from each side. */
+static void a_sheet_that_is_there_from_both_sides_gets_no_hole(void **state)
+{
+	struct mesh mesh = subject_flat(32);
+	const uint32_t count = mesh.triangle_count;
+	struct simplify_result result;
+	struct subject subject;
+	double before;
+
+	(void)state;
+	mesh.triangles = realloc(mesh.triangles, 2 * count * sizeof(*mesh.triangles));
+	for (uint32_t t = 0; t < count; t++)
+		shape_triangle(&mesh, mesh.triangles[t][1], mesh.triangles[t][0],
+			       mesh.triangles[t][2]);
+	subject_init(&subject, mesh);
+	before = subject_area(&subject.surface);
+	CHECK(simplify(&subject.surface, count / 4, INFINITY, &result) == 0);
+	CHECK(fabs(subject_area(&subject.surface) - before) < 1e-3 * before);
+	subject_finish(&subject);
+}
+
 static void stops_at_the_error_it_may_make(void **state)
 {
 	struct subject subject;
@@ -197,6 +218,7 @@ int main(void)
 		cmocka_unit_test(a_ring_stays_a_ring),
 		cmocka_unit_test(the_error_is_honest),
 		cmocka_unit_test(pebbles_vanish_but_something_stays),
+		cmocka_unit_test(a_sheet_that_is_there_from_both_sides_gets_no_hole),
 		cmocka_unit_test(stops_at_the_error_it_may_make),
 	};
 
