@@ -38,6 +38,17 @@ static void name_faces(const char *id, char name[DOCUMENT_NAME_BYTES])
 	snprintf(name, DOCUMENT_NAME_BYTES, "regions/%s.faces", id);
 }
 
+/* A list of faces means others than those of the mesh that is marked on. */
+static int refuse_other_scans(const struct site *site, struct diagnostics *diagnostics)
+{
+	if (!site_has_other_scans(site))
+		return 0;
+	return diagnostics_add(
+		diagnostics, -EINVAL, NULL, 0,
+		"the scans have been replaced since this program was started, so what is marked here "
+		"would be other faces: whoever administers gopura-curator must start it again");
+}
+
 /* ---- the list */
 
 static const char *title_of(const struct site *site, const cJSON *part)
@@ -298,8 +309,11 @@ static int save_part(struct site *site, const struct parts_file *parts,
 	char name[DOCUMENT_NAME_BYTES];
 	struct buffer faces;
 	cJSON *part;
-	int rc, scan = scan_of(site, set, diagnostics);
+	int scan, rc = refuse_other_scans(site, diagnostics);
 
+	if (rc < 0)
+		return rc;
+	scan = scan_of(site, set, diagnostics);
 	if (scan < 0)
 		return scan;
 	rc = get_part(site, parts, save, open, &part, diagnostics);
@@ -375,7 +389,10 @@ static int put_faces(const struct site *site, struct region_set *set, const char
 
 	if (rc < 0)
 		return fail(diagnostics, rc, "parts.json");
-	rc = face_list_read(&faces, path, file, site->mesh->scans[scan].face_count, diagnostics);
+	rc = refuse_other_scans(site, diagnostics);
+	if (rc == 0)
+		rc = face_list_read(&faces, path, file, site->mesh->scans[scan].face_count,
+				    diagnostics);
 	if (rc == 0)
 		rc = face_list_triangles(&triangles, &count, &faces, site->mesh, scan);
 	if (rc == 0)

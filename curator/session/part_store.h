@@ -38,14 +38,16 @@ struct part_to_save {
  * as saved.
  * -ESTALE: somebody has saved another region or title since it was opened; -ENOENT: it has been
  * removed since. -EINVAL: the region is empty, lies on several scans or on one without face
- * numbers, another part is open, a new part has no title, or parts.json is not valid. Errors of the
+ * numbers, the scans have been replaced, another part is open, a new part has no title, or
+ * parts.json is not valid. Errors of the
  * disk. All with a diagnostic. */
 must_check int part_store_save(struct site *site, const struct region_set *set,
 			       const struct part_to_save *save, struct open_part *open,
 			       struct diagnostics *diagnostics);
 
 /* Replaces the region by that of a part, as one change, and *open by the part. A part with a shape
- * has nothing marked. -ENOENT: there is no such part; -EINVAL: its list of faces is not valid. All
+ * has nothing marked. -ENOENT: there is no such part; -EINVAL: its list of faces is not valid, or
+ * of other scans than those of the mesh. All
  * with a diagnostic; then nothing has changed. */
 must_check int part_store_open(struct site *site, struct region_set *set, const char *id,
 			       struct open_part *open, struct diagnostics *diagnostics);

@@ -50,6 +50,23 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 	return 0;
 }
 
+bool site_has_other_scans(const struct site *site)
+{
+	struct diagnostics found = { 0 };
+	struct scans *now = NULL;
+	struct content content;
+	struct hash opened, key;
+	/* With faults in temple.ini, nothing is built of what is there now. */
+	const bool changed = content_read(&content, site->content.folder, &found) == 0 &&
+			     scans_create(&now, &content) == 0 && scans_key(now, &key, NULL) == 0 &&
+			     scans_key(site->scans, &opened, NULL) == 0 && !hash_equal(opened, key);
+
+	scans_destroy(now);
+	content_release(&content);
+	diagnostics_finish(&found);
+	return changed;
+}
+
 void site_close(struct site *site)
 {
 	if (!site->content.folder[0])

@@ -23,4 +23,8 @@ struct site {
 must_check int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics);
 void site_close(struct site *site); /* zeroed is fine */
 
+/* Returns whether the scans, or what temple.ini says of them, have changed since the folder was
+ * opened: then the numbers of the mesh's faces may be those of other faces. */
+bool site_has_other_scans(const struct site *site);
+
 #endif

@@ -332,6 +332,44 @@ static void a_title_is_written_only_over_the_one_it_replaces(void **state)
 	leave(&a);
 }
 
+/* A scan of that many bytes, which lies beside the files that say how it is marked. */
+static void put_scan(const char *text)
+{
+	put("temple.ini", "[model]\nname = Ball\nscans = scan.ply\n");
+	put("scan.ply", text);
+}
+
+static void no_region_is_saved_for_a_scan_that_was_replaced(void **state)
+{
+	struct content known = site.content;
+	struct diagnostics none = { 0 };
+	struct curator a;
+	struct hash key;
+
+	(void)state;
+	put_scan("one");
+	CHECK(content_read(&site.content, folder, &none) == 0);
+	CHECK(scans_create(&site.scans, &site.content) == 0 &&
+	      scans_key(site.scans, &key, NULL) == 0);
+	come(&a);
+	mark(&a, 3, 5);
+	CHECK(save_new(&a, "gate", "Gate") == 0);
+	CHECK(open(&a, "gate") == 0);
+	put_scan("another one");
+	mark(&a, 10, 12);
+	CHECK(save(&a, "gate") == -EINVAL);
+	CHECK(strcmp(text_of("regions/gate.faces"), "3-5\n") == 0);
+	CHECK(open(&a, "gate") == -EINVAL && a.set.count == 3);
+	put("temple.ini",
+	    "[model]\nscans = another.ply\n"); /* it has faults: nothing is built of it */
+	CHECK(save(&a, "gate") == 0);
+	leave(&a);
+	scans_destroy(site.scans);
+	content_release(&site.content);
+	site.content = known;
+	site.scans = NULL;
+}
+
 static void the_list_has_all_titles(void **state)
 {
 	struct buffer out;
@@ -362,6 +400,7 @@ int main(void)
 		TEST(a_region_is_saved_to_the_part_that_is_open_alone),
 		TEST(a_shape_opens_with_nothing_marked_and_is_replaced),
 		TEST(a_title_is_written_only_over_the_one_it_replaces),
+		TEST(no_region_is_saved_for_a_scan_that_was_replaced),
 		TEST(the_list_has_all_titles),
 	};
 
