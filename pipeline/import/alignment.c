@@ -16,6 +16,7 @@
 #include "base/array.h"
 #include "base/bytes.h"
 #include "base/json_text.h"
+#include "base/uri.h"
 #include "pipeline/import/alignment_conf.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/manifest.h"
@@ -417,25 +418,17 @@ static int read_mlp(struct reading *reading, struct bytes file)
 
 /* ---- manifests */
 
-/* Decodes %20 and the like. Returns false if the address is too long for a file's name. */
+/* Decodes the path of an address. Returns false if it is empty, or too long for a file's name. */
 static bool decode_address(const char *address, char out[PATH_MAX])
 {
-	size_t size = 0;
+	const size_t size = strcspn(address, "?#");
+	char path[PATH_MAX];
 
-	for (const char *c = address; *c && !strchr("?#", *c); c++) {
-		unsigned byte;
-
-		if (size == PATH_MAX - 1)
-			return false;
-		out[size++] = *c;
-		if (*c == '%' && isxdigit((unsigned char)c[1]) && isxdigit((unsigned char)c[2]) &&
-		    sscanf(c + 1, "%2x", &byte) == 1 && byte > 0) {
-			out[size - 1] = (char)byte;
-			c += 2;
-		}
-	}
-	out[size] = '\0';
-	return size > 0;
+	if (size == 0 || size >= sizeof(path))
+		return false;
+	memcpy(path, address, size);
+	path[size] = '\0';
+	return uri_decode(out, PATH_MAX, path);
 }
 
 static bool is_beside(const struct reading *reading, const char *name)

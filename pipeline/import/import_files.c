@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "base/transient.h"
+#include "base/uri.h"
 #include "pipeline/import/sandbox.h"
 #include "pipeline/keys/keys.h"
 
@@ -147,7 +148,7 @@ static int open_below(int folder, const char *name)
 	return fd;
 }
 
-int import_files_open_at(int folder_fd, const char *name)
+static int open_named(int folder_fd, const char *name)
 {
 	char clean[PATH_MAX];
 	const char *last;
@@ -172,6 +173,18 @@ int import_files_open_at(int folder_fd, const char *name)
 		return rc;
 	beside = open_below(folder_fd, last + 1);
 	return beside == -ENOENT ? rc : beside;
+}
+
+int import_files_open_at(int folder_fd, const char *name)
+{
+	char decoded[PATH_MAX];
+	int rc = open_named(folder_fd, name), other;
+
+	if (rc >= 0 || is_transient(rc) || !strchr(name, '%') ||
+	    !uri_decode(decoded, sizeof(decoded), name))
+		return rc;
+	other = open_named(folder_fd, decoded);
+	return other == -ENOENT ? rc : other;
 }
 
 int import_files_open(struct import_files *files, const char *name)

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/uri.h"
 #include "pipeline/scene/scenery_image.h"
 
 enum {
@@ -113,33 +114,6 @@ static int decode_base64(struct buffer *out, const char *text)
 	return rc < 0 ? rc : out->error;
 }
 
-static int hex_digit(char c)
-{
-	return c >= '0' && c <= '9'   ? c - '0'
-	       : c >= 'a' && c <= 'f' ? c - 'a' + 10
-	       : c >= 'A' && c <= 'F' ? c - 'A' + 10
-				      : -1;
-}
-
-/* Names are URIs: %20 is a space. A % that begins no byte stands for itself, as does %00, which
- * would end the name. Returns false if it is too long. */
-static bool decode_name(char out[NAME_BYTES], const char *uri)
-{
-	size_t size = 0;
-
-	for (; *uri && size + 1 < NAME_BYTES; uri++) {
-		const int high = *uri == '%' ? hex_digit(uri[1]) : -1;
-		const int low = high >= 0 ? hex_digit(uri[2]) : -1;
-		const bool is_byte = low >= 0 && high * 16 + low > 0;
-
-		out[size++] = is_byte ? (char)(high * 16 + low) : *uri;
-		if (is_byte)
-			uri += 2;
-	}
-	out[size] = '\0';
-	return !*uri;
-}
-
 static int read_buffer(struct gltf *gltf, struct buffer *out, const cJSON *json,
 		       const struct gltf_options *options)
 {
@@ -154,7 +128,7 @@ static int read_buffer(struct gltf *gltf, struct buffer *out, const cJSON *json,
 						 "a buffer is not valid base64; export it anew")
 				      : rc;
 	}
-	if (!uri || !decode_name(name, uri))
+	if (!uri || !uri_decode(name, sizeof(name), uri))
 		return gltf_say(gltf, -EBADMSG, json,
 				"a buffer has no \"uri\" and no chunk of a GLB; export it anew");
 	fd = options->open_file ? options->open_file(options->data, name) : -ENOENT;
@@ -416,7 +390,7 @@ int gltf_picture(struct picture *out, const struct gltf *gltf, const cJSON *text
 			out,
 			view_bytes(gltf, gltf_item(gltf, GLTF_VIEWS, image, "bufferView", NULL)),
 			name, gltf->path, line, warnings);
-	if (!decode_name(name, uri))
+	if (!uri_decode(name, sizeof(name), uri))
 		return 0;
 	rc = gltf->options.open_file ? gltf->options.open_file(gltf->options.data, name) : -ENOENT;
 	return scenery_image_read(out, rc, name, gltf->path, line, warnings);

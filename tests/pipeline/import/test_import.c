@@ -368,7 +368,7 @@ static void ply_pictures_are_upright_by_vertex_and_by_corner(void **state)
 }
 
 /* glTF counts v from the top: 0.1 there is 0.9 here. A KHR_texture_transform that turns, halves
- * and moves lays other numbers at the same places. */
+ * and moves lays other numbers at the same places. Names are URIs. */
 static void gltf_pictures_lie_where_the_file_has_them(void **state)
 {
 	static const char format[] =
@@ -377,8 +377,8 @@ static void gltf_pictures_lie_where_the_file_has_them(void **state)
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},"
 		"\"indices\":2,\"material\":0}]}],"
 		"\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0%s}}}],"
-		"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"skin.png\"}],"
-		"\"buffers\":[{\"uri\":\"square.bin\",\"byteLength\":92}],"
+		"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"my%%20skin.png\"}],"
+		"\"buffers\":[{\"uri\":\"my%%20square.bin\",\"byteLength\":92}],"
 		"\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
 		"{\"buffer\":0,\"byteOffset\":48,\"byteLength\":32},"
 		"{\"buffer\":0,\"byteOffset\":80,\"byteLength\":12}],"
@@ -410,8 +410,8 @@ static void gltf_pictures_lie_where_the_file_has_them(void **state)
 
 		CHECK(snprintf(gltf, sizeof(gltf), format, moved[i]) < (int)sizeof(gltf));
 		scan_write(path, "square.gltf", gltf, strlen(gltf));
-		scan_write_beside(path, "square.bin", &data[i], 92);
-		write_picture(path, "skin.png");
+		scan_write_beside(path, "my square.bin", &data[i], 92);
+		write_picture(path, "my skin.png");
 		if (import_scan(&mesh, path, &options, &report, &diagnostics) < 0)
 			fail_msg("%s", diagnostics.first.text);
 		check_square(&mesh, &report);

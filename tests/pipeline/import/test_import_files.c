@@ -265,6 +265,47 @@ static void pictures_from_elsewhere_are_not_read(void **state)
 	}
 }
 
+/* As glTF writes them. A name that has the % itself comes first. */
+static void names_are_decoded_if_they_are_not_there_as_written(void **state)
+{
+	static const struct {
+		const char *name, *text; /* NULL: not opened, with rc */
+		int rc;
+	} cases[] = {
+		{ "my%20skin.bin", "decoded", 0 },
+		{ "C:/scans/my%20skin.bin", "decoded", 0 },
+		{ "as%20written.bin", "as written", 0 },
+		{ "no%20such.bin", NULL, -ENOENT },
+		{ "%2e%2e/secret.bin", NULL, -EXDEV },
+		{ "..%2fsecret.bin", NULL, -EXDEV },
+		{ "%2ehidden/secret.bin", NULL, -EXDEV },
+	};
+	char path[PATH_MAX], text[20];
+	int folder;
+	(void)state;
+
+	put("scans/my skin.bin", "decoded");
+	put("scans/as%20written.bin", "as written");
+	put("scans/as written.bin", "decoded");
+	at(path, "scans/f.ply");
+	folder = import_files_open_folder(path);
+	CHECK(folder >= 0);
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		const char *right = cases[i].text ? cases[i].text : "";
+		int fd = import_files_open_at(folder, cases[i].name);
+
+		memset(text, 0, sizeof(text));
+		if (cases[i].text ? fd < 0 || read(fd, text, sizeof(text) - 1) < 0
+				  : fd != cases[i].rc)
+			fail_msg("%s: %d", cases[i].name, fd);
+		if (strcmp(text, right) != 0)
+			fail_msg("%s: '%s'", cases[i].name, text);
+		if (fd >= 0)
+			close(fd);
+	}
+	close(folder);
+}
+
 static void a_file_counts_once_however_often_it_is_named(void **state)
 {
 	static struct import_files_counted counted;
@@ -408,6 +449,7 @@ int main(void)
 		cmocka_unit_test(reads_a_buffer_below_and_one_that_was_copied_beside),
 		cmocka_unit_test(a_missing_file_is_told_as_missing),
 		cmocka_unit_test(pictures_from_elsewhere_are_not_read),
+		cmocka_unit_test(names_are_decoded_if_they_are_not_there_as_written),
 		cmocka_unit_test(a_file_counts_once_however_often_it_is_named),
 		cmocka_unit_test(pictures_have_a_limit_together),
 		cmocka_unit_test(a_fifo_is_no_scan),
