@@ -229,6 +229,13 @@ const struct aiScene *import_scene(const char *seen_path, const char *format_nam
 				strerror(-files.failed));
 		return NULL;
 	}
+	if (!scene && strstr(aiGetErrorString(), "referenced file") && files.missing_name[0]) {
+		diagnostics_add(diagnostics, -ENOENT, seen_path, 0,
+				"it names '%.200s', which is not beside it; copy that file beside "
+				"the scan",
+				files.missing_name);
+		return NULL;
+	}
 	if (!scene || !scene->mRootNode) {
 		const char *error = plain_error(aiGetErrorString());
 		const size_t length = strlen(error);

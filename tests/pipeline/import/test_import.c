@@ -557,6 +557,14 @@ static void refuses_what_is_no_surface(void **state)
 		  "{\"accessors\":{\"a\":[7]},\"meshes\":[{\"primitives\":[{\"attributes\":"
 		  "{\"TEXCOORD_0\":1e300}},{\"attributes\":[3]},4]},5]}",
 		  "glTF reader says" },
+		{ "buffer.gltf",
+		  "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":["
+		  "{\"mesh\":0}],\"buffers\":[{\"uri\":\"scene.bin\","
+		  "\"byteLength\":4}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":4}],"
+		  "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":1,"
+		  "\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+		  "\"POSITION\":0}}]}]}",
+		  "it names 'scene.bin', which is not beside it; copy that file beside the scan" },
 		{ "webp.gltf", "{\"extensionsRequired\":[\"EXT_texture_webp\"]}",
 		  "png --formats webp" },
 		{ "new.gltf", "{\"extensionsRequired\":[\"ACME_of_tomorrow\"]}",
