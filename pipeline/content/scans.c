@@ -18,7 +18,7 @@
 /* IMPORT_VERSION must be raised whenever the import gives another mesh for the same files,
  * CLOSING_VERSION whenever surface = octree makes another of it. */
 enum {
-	IMPORT_VERSION = 2,
+	IMPORT_VERSION = 3,
 	CLOSING_VERSION = 3,
 	SHAPE_VERSION = 2,
 	KEY_TEXT_MAX = 1 << 26,

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/shared_memory.h"
+#include "geometry/srgb.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_limits.h"
 #include "pipeline/import/import_scene.h"
@@ -58,25 +59,38 @@ static uint8_t colour_byte(float value, bool is_linear)
 	if (value >= 1)
 		return 255;
 	if (is_linear)
-		value = value <= 0.0031308f ? 12.92f * value
-					    : 1.055f * powf(value, 1 / 2.4f) - 0.055f;
+		value = srgb_of_light(value);
 	return (uint8_t)(value * 255 + 0.5f);
 }
 
-/* Gets the file name of a material's picture. Returns false if it has none. */
-static bool picture_of(const struct aiMaterial *material, char name[MAXLEN])
+/* Gets the file name of a material's picture, and which of the texture coordinates it lies by.
+ * Returns false if it has none. */
+static bool picture_of(const struct aiMaterial *material, char name[MAXLEN], unsigned *channel)
 {
 	static const enum aiTextureType types[] = { aiTextureType_BASE_COLOR,
 						    aiTextureType_DIFFUSE };
 	struct aiString path;
 
+	*channel = 0;
 	for (size_t i = 0; i < ARRAY_COUNT(types); i++)
-		if (aiGetMaterialTexture(material, types[i], 0, &path, NULL, NULL, NULL, NULL, NULL,
-					 NULL) == aiReturn_SUCCESS) {
+		if (aiGetMaterialTexture(material, types[i], 0, &path, NULL, channel, NULL, NULL,
+					 NULL, NULL) == aiReturn_SUCCESS) {
 			snprintf(name, MAXLEN, "%s", path.data);
 			return true;
 		}
 	return false;
+}
+
+/* Returns the texture coordinates of the mesh's picture, or NULL. */
+static const struct aiVector3D *coordinates_of(const struct aiMesh *mesh,
+					       const struct aiMaterial *material)
+{
+	char name[MAXLEN];
+	unsigned channel;
+
+	return picture_of(material, name, &channel) && channel < AI_MAX_NUMBER_OF_TEXTURECOORDS
+		       ? mesh->mTextureCoords[channel]
+		       : NULL;
 }
 
 /* Gets a material's plain colour. Returns false if it is only a default (that of assimp, or white,
@@ -100,6 +114,25 @@ static bool plain_colour_of(const struct aiMaterial *material, struct import_for
 	rgb[1] = colour_byte(colour.g, format.is_linear);
 	rgb[2] = colour_byte(colour.b, format.is_linear);
 	return rgb[0] != 255 || rgb[1] != 255 || rgb[2] != 255;
+}
+
+/* Gets what glTF multiplies a picture, and the colours of vertices, with. Returns false if that
+ * changes nothing. In other formats a colour beside a picture is a shade that programs leave there.
+ */
+static bool factor_of(const struct aiMaterial *material, struct import_foreign_format format,
+		      float factor[3])
+{
+	struct aiColor4D colour;
+
+	for (int k = 0; k < 3; k++)
+		factor[k] = 1;
+	if (!format.is_linear ||
+	    aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) != aiReturn_SUCCESS)
+		return false;
+	factor[0] = colour.r;
+	factor[1] = colour.g;
+	factor[2] = colour.b;
+	return factor[0] != 1 || factor[1] != 1 || factor[2] != 1;
 }
 
 /* How KHR_texture_transform of glTF moves texture coordinates. */
@@ -147,7 +180,7 @@ static void move_uv(float out[2], const struct uv_move *move, const struct aiVec
 static int count_mesh(struct builder *builder, uint32_t index)
 {
 	const struct aiMesh *mesh;
-	char name[MAXLEN];
+	const struct aiMaterial *material;
 	uint8_t rgb[3];
 
 	if (index >= builder->scene->mNumMeshes)
@@ -155,15 +188,14 @@ static int count_mesh(struct builder *builder, uint32_t index)
 	mesh = builder->scene->mMeshes[index];
 	if (mesh->mMaterialIndex >= builder->scene->mNumMaterials)
 		return -EBADMSG;
+	material = builder->scene->mMaterials[mesh->mMaterialIndex];
 	builder->vertices += mesh->mNumVertices;
 	builder->triangles += mesh->mNumFaces;
 	if (builder->vertices >= UINT32_MAX || builder->triangles >= UINT32_MAX)
 		return -EFBIG;
-	builder->has_colours |= mesh->mColors[0] ||
-				plain_colour_of(builder->scene->mMaterials[mesh->mMaterialIndex],
-						builder->job->format, rgb);
-	builder->has_textures |= mesh->mTextureCoords[0] &&
-				 picture_of(builder->scene->mMaterials[mesh->mMaterialIndex], name);
+	builder->has_colours |=
+		mesh->mColors[0] || plain_colour_of(material, builder->job->format, rgb);
+	builder->has_textures |= coordinates_of(mesh, material) != NULL;
 	return 0;
 }
 
@@ -214,15 +246,43 @@ static int load_texture(struct builder *builder, const struct aiMaterial *materi
 	struct import_files files = { .scan_path = builder->job->path, .in_sandbox = true };
 	const struct aiTexture *embedded;
 	char name[MAXLEN];
+	unsigned channel;
 	uint8_t plain[3];
 
 	plain_colour_of(material, builder->job->format, plain);
-	if (!picture_of(material, name))
+	if (!picture_of(material, name, &channel))
 		return import_texture_plain(out, plain);
 	embedded = embedded_texture(builder->scene, name);
 	if (embedded)
 		return load_embedded(builder, embedded, name, plain, out);
 	return import_texture(out, &files, name, plain, &builder->job->report);
+}
+
+/* Multiplies the light of a picture. */
+static void tint(struct mesh_texture *picture, const float factor[3])
+{
+	const size_t pixels = (size_t)picture->width * picture->height;
+	uint8_t tinted[3][256];
+
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 256; i++)
+			tinted[k][i] = colour_byte(factor[k] * srgb_to_light((float)i / 255), true);
+	for (size_t i = 0; i < 3 * pixels; i++)
+		picture->rgb[i] = tinted[i % 3][picture->rgb[i]];
+}
+
+static int load_tinted(struct builder *builder, const struct aiMaterial *material,
+		       struct mesh_texture *out)
+{
+	const uint32_t pictures = builder->job->report.textures;
+	float factor[3];
+	int rc = load_texture(builder, material, out);
+
+	/* what stands for a picture has the colour */
+	if (rc == 0 && builder->job->report.textures > pictures &&
+	    factor_of(material, builder->job->format, factor))
+		tint(out, factor);
+	return rc;
 }
 
 /* Loads one texture per material; a plain colour becomes a texture of one pixel. */
@@ -239,7 +299,7 @@ static int load_textures(struct builder *builder)
 		return -ENOMEM;
 	mesh->texture_count = count;
 	for (uint32_t i = 0; i < count && rc == 0; i++)
-		rc = load_texture(builder, builder->scene->mMaterials[i], &mesh->textures[i]);
+		rc = load_tinted(builder, builder->scene->mMaterials[i], &mesh->textures[i]);
 	return rc;
 }
 
@@ -268,27 +328,33 @@ static void add_vertices(struct builder *builder, const struct aiMesh *from,
 {
 	struct mesh *mesh = &builder->mesh;
 	const struct aiMaterial *material = builder->scene->mMaterials[from->mMaterialIndex];
+	const struct aiVector3D *coordinates = coordinates_of(from, material);
 	const struct uv_move move = uv_move_of(material);
 	bool is_linear = builder->job->format.is_linear;
+	float factor[3];
 	uint8_t plain[3];
 
 	plain_colour_of(material, builder->job->format, plain);
+	factor_of(material, builder->job->format, factor);
 	for (uint32_t i = 0; i < from->mNumVertices; i++) {
 		uint32_t at = mesh->vertex_count++;
 		struct aiVector3D v = from->mVertices[i];
 
 		aiTransformVecByMatrix4(&v, place);
 		memcpy(mesh->positions[at], (float[3]){ v.x, v.y, v.z }, 12);
-		if (mesh->uvs && from->mTextureCoords[0])
-			move_uv(mesh->uvs[at], &move, &from->mTextureCoords[0][i]);
+		if (mesh->uvs && coordinates)
+			move_uv(mesh->uvs[at], &move, &coordinates[i]);
 		if (!mesh->colours)
 			continue;
 		memcpy(mesh->colours[at], plain, 3);
 		mesh->colours[at][3] = 255;
 		if (from->mColors[0]) {
-			mesh->colours[at][0] = colour_byte(from->mColors[0][i].r, is_linear);
-			mesh->colours[at][1] = colour_byte(from->mColors[0][i].g, is_linear);
-			mesh->colours[at][2] = colour_byte(from->mColors[0][i].b, is_linear);
+			mesh->colours[at][0] =
+				colour_byte(factor[0] * from->mColors[0][i].r, is_linear);
+			mesh->colours[at][1] =
+				colour_byte(factor[1] * from->mColors[0][i].g, is_linear);
+			mesh->colours[at][2] =
+				colour_byte(factor[2] * from->mColors[0][i].b, is_linear);
 		}
 	}
 }
