@@ -76,16 +76,19 @@ static int make(struct settings *settings, struct scans *scans)
 {
 	const struct content *content = scans_content(scans);
 	struct diagnostics diagnostics = { 0 };
+	const struct scans_shape *shape;
 	struct texmesh_report report;
 	const struct mesh *mesh;
 	struct buffer file;
 	int rc = scans_get_mesh(scans, &mesh, &diagnostics);
 
+	if (rc == 0)
+		rc = scans_get_shape(scans, &shape, &diagnostics);
 	if (rc < 0) {
 		fprintf(stderr, "gopura-content export: %s\n", diagnostics_cause(&diagnostics, rc));
 		return rc;
 	}
-	settings->options.lit = content_is_lit(content, mesh->uvs != NULL);
+	settings->options.lit = content_is_lit(content, shape->had_pictures);
 	buffer_init(&file, TEXMESH_BUDGET_MOST_BYTES);
 	rc = texmesh_make(&file, mesh, &settings->options, &report);
 	scans_drop_mesh(scans);

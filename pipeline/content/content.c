@@ -159,10 +159,10 @@ void content_release(struct content *content)
 	*content = (struct content){ 0 };
 }
 
-bool content_is_lit(const struct content *content, bool has_textures)
+bool content_is_lit(const struct content *content, bool has_pictures)
 {
 	if (content->lit == CONTENT_LIT_AUTO)
-		return !has_textures;
+		return !has_pictures || content->colours != CONTENT_COLOURS_SCAN;
 	return content->lit == CONTENT_LIT_YES;
 }
 

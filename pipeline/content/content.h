@@ -103,8 +103,9 @@ must_check int content_file_path(const struct content *content, const char *name
 must_check int content_work_path(const struct content *content, const char *name,
 				 char out[CONTENT_PATH_BYTES]);
 
-/* Returns whether the model is lit; "auto" depends on whether the scans have pictures. */
-bool content_is_lit(const struct content *content, bool has_textures);
+/* Returns whether the model is lit; "auto" depends on whether it has the colours of pictures, which
+ * hold their light. has_pictures: struct scans_shape's had_pictures. */
+bool content_is_lit(const struct content *content, bool has_pictures);
 /* Returns whether a name may be that of a role ([release] role). */
 bool content_role_is_valid(const char *name);
 /* What such a name is, for messages. */

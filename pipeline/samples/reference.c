@@ -19,7 +19,7 @@
 #include "render/display/gl.h"
 #include "render/display/headless.h"
 
-enum { REFERENCE_VERSION = 1, LINE_BYTES = 512, PNG_BYTES_MAX = 256 << 20, NUMBERS = 7 };
+enum { REFERENCE_VERSION = 2, LINE_BYTES = 512, PNG_BYTES_MAX = 256 << 20, NUMBERS = 7 };
 
 /* Everything that one run shares. */
 struct easel {
@@ -196,16 +196,19 @@ static int set_up(struct easel *easel, struct scans *scans, struct diagnostics *
 					   .substance = content->substance };
 	size_t pixels = (size_t)options->width_px * (size_t)options->height_px;
 	int side = options->width_px > options->height_px ? options->width_px : options->height_px;
+	const struct scans_shape *shape;
 	const struct mesh *mesh;
 	int rc = scans_get_mesh(scans, &mesh, diagnostics);
 
+	if (rc == 0)
+		rc = scans_get_shape(scans, &shape, diagnostics);
 	if (rc < 0)
 		return rc;
 	/* The largest frame whose block divides the samples; jitter provides the rest. */
 	for (uint32_t k = 1; k <= options->supersample; k++)
 		if (options->supersample % k == 0 && side * (int)k <= GL_LIMIT_TEXTURE_PX)
 			easel->block = k;
-	drawing.lit = content_is_lit(content, mesh->textures != NULL);
+	drawing.lit = content_is_lit(content, shape->had_pictures);
 	memcpy(drawing.sun, content->sun, sizeof(drawing.sun));
 	easel->sums = malloc(pixels * sizeof(*easel->sums));
 	easel->frame = malloc(pixels * easel->block * easel->block * 4);

@@ -37,6 +37,14 @@ echo "20 kB: $small dB, 100 kB: $large dB"
 python3 -c 'import sys; sys.exit(not float(sys.argv[2]) > max(26, float(sys.argv[1]) + 1))' "$small" "$large" ||
 	fail "the models do not look like the scan"
 
+# A closed surface of it has the colours of the picture, which hold their light, as the release has.
+mkdir "$work/closed"
+cp "$work/scan/"pillar.* "$work/closed/"
+printf '%s\n' '[model]' 'name = pillar' 'scans = pillar.obj' '[hierarchy]' 'surface = octree' 'cell_mm = 100' \
+	>"$work/closed/temple.ini"
+build/gopura-content export "$work/closed" --budget 100kB --out "$work/closed.glb" >/dev/null || fail "no closed model"
+grep -q KHR_materials_unlit "$work/closed.glb" || fail "the colours of a picture are lit once more"
+
 # The manifest of a web page, and back.
 cp "$work/of-100000/pillar.glb" "$work/web/"
 build/gopura-content annotations export "$work/scan" --iiif --model pillar.glb --base https://museum.example/pillar \

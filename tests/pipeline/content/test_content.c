@@ -108,6 +108,37 @@ static void takes_a_substance_for_the_colours(void **state)
 	remove_folder(folder);
 }
 
+/* The light in the pictures of a scan is no light of what has another colour. */
+static void is_lit_unless_it_has_the_colours_of_pictures(void **state)
+{
+	static const struct {
+		const char *lines;
+		bool with_pictures, without;
+	} cases[] = {
+		{ "", false, true },
+		{ "colours = scan\n", false, true },
+		{ "colours = #c8b090\n", true, true },
+		{ "colours = marble\n", true, true },
+		{ "colours = #c8b090\nlit = no\n", false, false },
+		{ "lit = yes\n", true, true },
+	};
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct diagnostics diagnostics = { 0 };
+		struct content content;
+		char folder[256], ini[256];
+
+		snprintf(ini, sizeof(ini), "[model]\nscans = tower.ply\n%s", cases[i].lines);
+		make_folder(folder, ini);
+		CHECK(content_read(&content, folder, &diagnostics) == 0);
+		CHECK(content_is_lit(&content, true) == cases[i].with_pictures);
+		CHECK(content_is_lit(&content, false) == cases[i].without);
+		content_release(&content);
+		remove_folder(folder);
+	}
+}
+
 static void faults_name_file_line_and_cure(void **state)
 {
 	static const struct {
@@ -454,6 +485,7 @@ int main(void)
 		cmocka_unit_test(defaults_need_only_a_scan),
 		cmocka_unit_test(every_key_is_read),
 		cmocka_unit_test(takes_a_substance_for_the_colours),
+		cmocka_unit_test(is_lit_unless_it_has_the_colours_of_pictures),
 		cmocka_unit_test(faults_name_file_line_and_cure),
 		cmocka_unit_test(tells_all_faults_at_once),
 		cmocka_unit_test(says_what_is_no_content_folder),
