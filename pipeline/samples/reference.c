@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/array.h"
 #include "base/progress.h"
@@ -145,6 +146,7 @@ static int view_key(struct hash *out, const struct content *content, struct hash
 	buffer_put_u32(&text, REFERENCE_VERSION);
 	buffer_put(&text, scans.bytes, HASH_BYTES);
 	buffer_put_u32(&text, content->colours);
+	buffer_put_u32(&text, content->substance);
 	buffer_put_u32(&text, content->lit);
 	for (int i = 0; i < 3; i++) {
 		buffer_put_f32(&text, content->sun[i]);
@@ -300,6 +302,16 @@ static int draw_samples(struct easel *easel, const struct camera *view)
 	return 0;
 }
 
+/* A picture without a key is drawn again. */
+static int remove_key(const struct reference_options *options, uint32_t n)
+{
+	char path[PATH_MAX];
+
+	view_path(path, options, n, "key");
+	return unlink(path) < 0 && errno != ENOENT ? -errno : 0;
+}
+
+/* The key comes last: it tells that the picture is whole. */
 static int write_view(const struct easel *easel, uint32_t n, struct hash key)
 {
 	struct picture picture = { .width = (uint32_t)easel->options->width_px,
@@ -325,6 +337,8 @@ static int write_view(const struct easel *easel, uint32_t n, struct hash key)
 	}
 	buffer_init(&file, PNG_BYTES_MAX);
 	rc = picture_encode_png(&file, &picture);
+	if (rc == 0)
+		rc = remove_key(easel->options, n);
 	view_path(path, easel->options, n, "png");
 	if (rc == 0)
 		rc = bytes_write_file(buffer_bytes(&file), path);

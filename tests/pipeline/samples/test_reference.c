@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "format/picture.h"
@@ -11,12 +12,17 @@
 
 static char dir[64];
 
-static void put(const char *name, const char *text)
+static void put_bytes(const char *name, struct bytes bytes)
 {
 	char path[128];
 
 	snprintf(path, sizeof(path), "%s/%s", dir, name);
-	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)text, strlen(text) }, path) == 0);
+	CHECK(bytes_write_file(bytes, path) == 0);
+}
+
+static void put(const char *name, const char *text)
+{
+	put_bytes(name, (struct bytes){ (const uint8_t *)text, strlen(text) });
 }
 
 /* A square -1..1 at y = 0 that looks towards -y: left half red, right half blue. */
@@ -87,8 +93,8 @@ static void refuses_bad_views(void **state)
 	CHECK(read_views(&views, &count, "# nothing\n", NULL) == -EINVAL && !views);
 }
 
-static void draw(struct picture *out, const char *views_text, int side, uint32_t supersample,
-		 uint32_t expected_drawn)
+/* Returns how many pictures were drawn, or a negative errno. */
+static int try_to_draw(const char *views_text, int side, uint32_t supersample)
 {
 	struct reference_options options = { .width_px = side,
 					     .height_px = side,
@@ -98,26 +104,44 @@ static void draw(struct picture *out, const char *views_text, int side, uint32_t
 	struct content content;
 	struct scans *scans;
 	struct camera *views;
-	char out_dir[128], path[160];
-	struct buffer file;
+	char out_dir[128];
 	uint32_t count;
+	int rc;
 
 	snprintf(out_dir, sizeof(out_dir), "%s/out", dir);
 	options.out_dir = out_dir;
 	CHECK(read_views(&views, &count, views_text, &diagnostics) == 0);
 	CHECK(content_read(&content, dir, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
-	CHECK(reference_draw(scans, views, count, &options, &report, &diagnostics) == 0);
-	CHECK(report.drawn == expected_drawn && report.kept == count - expected_drawn);
-	snprintf(path, sizeof(path), "%s/view-%04u.png", out_dir, count - 1);
+	rc = reference_draw(scans, views, count, &options, &report, &diagnostics);
+	if (rc == 0) {
+		CHECK(report.drawn + report.kept == count);
+		rc = (int)report.drawn;
+	}
+	scans_destroy(scans);
+	content_release(&content);
+	diagnostics_finish(&diagnostics);
+	free(views);
+	return rc;
+}
+
+/* Reads the last picture. */
+static void draw(struct picture *out, const char *views_text, int side, uint32_t supersample,
+		 uint32_t expected_drawn)
+{
+	uint32_t views = 0;
+	struct buffer file;
+	char path[160];
+
+	for (const char *c = views_text; *c; c++)
+		views += *c == '\n';
+	assert_int_equal(try_to_draw(views_text, side, supersample), expected_drawn);
+	snprintf(path, sizeof(path), "%s/out/view-%04u.png", dir, views - 1);
 	buffer_init(&file, 1 << 20);
 	CHECK(buffer_read_file(&file, path) == 0);
 	CHECK(picture_decode(out, buffer_bytes(&file)) == 0);
 	CHECK(out->width == (uint32_t)side && out->height == (uint32_t)side);
 	buffer_finish(&file);
-	scans_destroy(scans);
-	content_release(&content);
-	free(views);
 }
 
 /* From 2 m at 90 degrees a pixel of 16 is a quarter of a metre: the square fills 4..11. */
@@ -207,6 +231,71 @@ static void keeps_what_is_there(void **state)
 	picture_finish(&picture);
 }
 
+static void another_substance_is_another_picture(void **state)
+{
+	struct picture picture;
+
+	(void)state;
+	put("temple.ini", "[model]\nscans = scan.ply\ncolours = marble\n");
+	draw(&picture, front, 16, 1, 1);
+	picture_finish(&picture);
+	put("temple.ini", "[model]\nscans = scan.ply\ncolours = laterite\n");
+	draw(&picture, front, 16, 1, 1);
+	picture_finish(&picture);
+}
+
+/* Settings may go back to those of a picture that another one began to replace. */
+static void a_picture_that_cannot_be_written_has_no_key(void **state)
+{
+	struct picture picture;
+	char path[160];
+
+	(void)state;
+	put("temple.ini", "[model]\nscans = scan.ply\nlit = no\n");
+	draw(&picture, "0 -4 0  0 0 0  90\n", 16, 1, 1);
+	picture_finish(&picture);
+	put("temple.ini", "[model]\nscans = scan.ply\nlit = yes\n");
+	snprintf(path, sizeof(path), "%s/out/view-0000.png", dir);
+	CHECK(unlink(path) == 0 && mkdir(path, 0777) == 0);
+	CHECK(try_to_draw("0 -4 0  0 0 0  90\n", 16, 1) < 0);
+	CHECK(rmdir(path) == 0);
+	put("out/view-0000.png", "what was half written\n");
+	put("temple.ini", "[model]\nscans = scan.ply\nlit = no\n");
+	draw(&picture, "0 -4 0  0 0 0  90\n", 16, 1, 1);
+	picture_finish(&picture);
+}
+
+/* A cube with a picture of one grey, turned from the sun, becomes a closed surface: its colours are
+ * those of the picture, which has its own light. */
+static void a_surface_made_of_pictures_is_not_lit(void **state)
+{
+	struct picture grey = { .width = 8, .height = 8, .rgba = malloc(8 * 8 * 4) }, picture;
+	struct buffer file;
+
+	(void)state;
+	CHECK(grey.rgba != NULL);
+	for (int i = 0; i < 8 * 8 * 4; i++)
+		grey.rgba[i] = i % 4 == 3 ? 255 : (uint8_t)(149 + i % 2);
+	buffer_init(&file, 1 << 20);
+	CHECK(picture_encode_png(&file, &grey) == 0);
+	put_bytes("grey.png", buffer_bytes(&file));
+	buffer_finish(&file);
+	picture_finish(&grey);
+	put("cube.ply", "ply\nformat ascii 1.0\ncomment TextureFile grey.png\nelement vertex 8\n"
+			"property float x\nproperty float y\nproperty float z\nelement face 6\n"
+			"property list uchar int vertex_indices\n"
+			"property list uchar float texcoord\nend_header\n"
+			"-1 -1 -1\n1 -1 -1\n1 1 -1\n-1 1 -1\n-1 -1 1\n1 -1 1\n1 1 1\n-1 1 1\n"
+			"4 0 3 2 1 8 0 0 1 0 1 1 0 1\n4 4 5 6 7 8 0 0 1 0 1 1 0 1\n"
+			"4 0 1 5 4 8 0 0 1 0 1 1 0 1\n4 2 3 7 6 8 0 0 1 0 1 1 0 1\n"
+			"4 1 2 6 5 8 0 0 1 0 1 1 0 1\n4 3 0 4 7 8 0 0 1 0 1 1 0 1\n");
+	put("temple.ini", "[model]\nscans = cube.ply\nsun = 0 1 0\n[hierarchy]\n"
+			  "surface = octree\ncell_mm = 100\n");
+	draw(&picture, "0 -4 0  0 0 0  60\n", 16, 1, 1);
+	CHECK(abs(picture.rgba[4 * (8 * 16 + 8)] - 149) <= 4);
+	picture_finish(&picture);
+}
+
 static void shows_nothing_behind_the_eye(void **state)
 {
 	struct picture picture;
@@ -227,6 +316,9 @@ int main(void)
 		cmocka_unit_test(averages_colour_apart_from_coverage),
 		cmocka_unit_test(jitter_equals_a_larger_frame),
 		cmocka_unit_test(keeps_what_is_there),
+		cmocka_unit_test(another_substance_is_another_picture),
+		cmocka_unit_test(a_picture_that_cannot_be_written_has_no_key),
+		cmocka_unit_test(a_surface_made_of_pictures_is_not_lit),
 		cmocka_unit_test(shows_nothing_behind_the_eye),
 	};
 
