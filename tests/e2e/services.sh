@@ -15,6 +15,9 @@ tiny_content "$work/content" 10000 2000
 build/gopura-content build "$work/content" --out "$work/release" --keys "$work/keys" >"$work/log" 2>&1 ||
 	{ cat "$work/log"; fail "the first build"; }
 
+# A content folder that comes from elsewhere has accounts already.
+echo "password of ana" | build/gopura-curator user add "$work/content" ana --role editor
+
 # ---- a machine: this one's files below, what is written above
 space=$(mktemp -d)
 away() {
@@ -30,7 +33,7 @@ mount -t overlay overlay -o "lowerdir=/,upperdir=$space/above,workdir=$space/wor
 root=$space/root
 ln -s /dev/null "$root/etc/systemd/system/systemd-networkd-wait-online.service" # it has no network
 rm -f "$root/etc/machine-id" "$root"/etc/systemd/system/*.wants/* "$root"/etc/nginx/sites-enabled/*
-mkdir -p "$root/srv/gopura" "$root/var/lib/gopura-publisher" "$root/etc/gopura" "$root/srv/test"
+mkdir -p "$root/srv/gopura" "$root/var/lib/gopura-publisher" "$root/srv/test"
 cp build/gopura-curator build/gopura-content "$root/usr/bin/"
 cp systemd/gopura-curator.service systemd/gopura-publisher.service "$root/etc/systemd/system/"
 cp -a "$work/content" "$work/release" "$space/gopura/" # no overlay: files in one have other devices than their folder
@@ -42,7 +45,6 @@ openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 
 # Without a sign-on, as its head says.
 sed -e '/auth_request/d' -e '/Remote-User/d' -e '/Answers 200/d' -e '/location = .sign-on/,/^\t}/d' server/curator.conf \
 	>"$root/etc/nginx/sites-enabled/curator.conf"
-echo CURATOR_HOST=curator.museum.example >"$root/etc/gopura/curator.env"
 sed -n '/^    groupadd/,/^$/p' docs/curator.md | sed 's/^    //' >"$root/srv/test/setup.sh"
 grep -q useradd "$root/srv/test/setup.sh" || fail "docs/curator.md does not say how to set the services up"
 
@@ -52,12 +54,9 @@ cd /srv/test
 (
 	set -eux
 	bash -eux setup.sh
-	for one in ana:editor petra:publisher; do
-		echo "password of ${one%:*}" |
-			runuser -u gopura-curator -- gopura-curator user add /srv/gopura/content "${one%:*}" --role "${one#*:}"
-	done
-	usermod -a -G gopura-curator www-data
-	systemctl start gopura-publisher.service gopura-curator.service
+	echo "password of petra" |
+		runuser -u gopura-curator -- gopura-curator user add /srv/gopura/content petra --role publisher
+	systemctl enable --now gopura-publisher.service gopura-curator.service
 	systemctl start nginx.service
 	python3 services.py
 ) >log 2>&1
