@@ -96,7 +96,7 @@ static void start_circling(struct visitor *visitor, int64_t now_ms)
 			    o->home_target_m);
 	attract_camera_pose(&visitor->attract, 0, eye_m, target_m);
 	navigator_fly(navigator, eye_m, target_m, HOMEWARD_MS);
-	visitor->attract_since_ms = now_ms + HOMEWARD_MS;
+	visitor->attract_since_ms = now_ms;
 	visitor->circles = true;
 }
 
@@ -185,6 +185,7 @@ int visitor_wait_ms(const struct visitor *visitor)
 
 bool visitor_lead_eye(struct visitor *visitor, int64_t now_ms)
 {
+	struct navigator *navigator = &visitor->env.eye->navigator;
 	float eye_m[3], target_m[3];
 	bool moves;
 
@@ -192,11 +193,16 @@ bool visitor_lead_eye(struct visitor *visitor, int64_t now_ms)
 		return false;
 	if (visitor->env.tours->tour.state != TOUR_OFF)
 		return tour_player_lead_eye(visitor->env.tours, now_ms, nobody_is_there(visitor));
-	if (!nobody_is_there(visitor) || now_ms < visitor->attract_since_ms)
+	if (!nobody_is_there(visitor))
 		return false;
+	if (navigator->flight_left_ms > 0) {
+		/* On its way to the circle, which may lead around walls. */
+		visitor->attract_since_ms = now_ms;
+		return false;
+	}
 	moves = attract_camera_pose(&visitor->attract, now_ms - visitor->attract_since_ms, eye_m,
 				    target_m);
-	navigator_look(&visitor->env.eye->navigator, eye_m, target_m);
+	navigator_look(navigator, eye_m, target_m);
 	return moves;
 }
 

