@@ -487,10 +487,23 @@ const char *information_view_language(const struct information_view *view)
 	return view && view->language[0] ? view->language : NULL;
 }
 
+/* Opens the page in another language, where it was read, with what lies over it: its picture, or a
+ * card that one of its links opened. */
+static void open_page_again(struct information_view *view)
+{
+	struct overlay *overlay = view->overlay;
+	const int card = overlay_card(overlay), picture = overlay_picture(overlay);
+	const float read = overlay_read(overlay);
+
+	if (!information_view_open_page(view, (uint32_t)overlay_page(overlay)))
+		return;
+	overlay_read_from(overlay, read);
+	overlay_show_card(overlay, card);
+	overlay_show_picture(overlay, picture);
+}
+
 void information_view_set_language(struct information_view *view, const char *language)
 {
-	int page;
-
 	if (view->info)
 		language = info_nearest_language(view->info, language);
 	if (strcmp(view->language, language) == 0)
@@ -499,12 +512,11 @@ void information_view_set_language(struct information_view *view, const char *la
 	snprintf(view->language, sizeof(view->language), "%s", language);
 	if (!view->overlay)
 		return;
-	page = overlay_page(view->overlay);
 	overlay_language(view->overlay, view->language);
 	if (tell_parts(view) < 0 || tell_tours(view) < 0)
 		log_error("app", "out of memory for the texts of parts and tours");
-	if (page >= 0)
-		information_view_open_page(view, (uint32_t)page);
+	if (overlay_page(view->overlay) >= 0)
+		open_page_again(view);
 	if (overlay_searching(view->overlay))
 		information_view_search(view); /* results in the chosen language come first */
 }

@@ -240,6 +240,34 @@ static void falls_back_to_the_first_language(void **state)
 	finish_release(&release);
 }
 
+static void another_language_keeps_what_is_open(void **state)
+{
+	struct release release;
+	struct information_view *view;
+	struct overlay *overlay;
+	float read;
+
+	(void)state;
+	make_release(&release);
+	view = begin(&release, NULL);
+	CHECK(give_page(view, &release) && give(view, &release, 0));
+	overlay = information_view_overlay(view);
+	CHECK(information_view_open_page(view, 0));
+	overlay_read_from(overlay, 0.5f);
+	read = overlay_read(overlay);
+	overlay_show_card(overlay, 1); /* by a link of the page */
+	information_view_set_language(view, "km");
+	CHECK(overlay_page(overlay) == 0 && overlay_card(overlay) == 1);
+	CHECK(read > 0.4f && overlay_read(overlay) == read);
+	overlay_show_card(overlay, -1);
+	overlay_show_picture(overlay, 3);
+	information_view_set_language(view, "en");
+	CHECK(overlay_page(overlay) == 0 && overlay_picture(overlay) == 3);
+	CHECK(overlay_card(overlay) == -1);
+	information_view_destroy(view);
+	finish_release(&release);
+}
+
 /* The letters as the overlay's own keyboard has them. */
 static void press(struct overlay *overlay, const char *letter)
 {
@@ -498,6 +526,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		IN_A_FOLDER(asks_for_page_then_database_then_nothing),
 		IN_A_FOLDER(falls_back_to_the_first_language),
+		IN_A_FOLDER(another_language_keeps_what_is_open),
 		IN_A_FOLDER(a_query_lists_what_it_finds),
 		IN_A_FOLDER(a_point_belongs_to_the_smallest_region),
 		IN_A_FOLDER(does_not_ask_again_for_what_came_damaged),
