@@ -6,6 +6,7 @@
 
 #include "base/hangul.h"
 #include "ui/icon.h"
+#include "ui/languages.h"
 
 #define ROW_MM     11.0f
 #define COLUMN_MM  14.0f
@@ -50,7 +51,7 @@ static const struct {
 static const char *find_rows(const char *language)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(layouts); i++)
-		if (strncmp(layouts[i].language, language, 2) == 0)
+		if (languages_is(language, layouts[i].language))
 			return layouts[i].rows;
 	return latin;
 }

@@ -34,3 +34,10 @@ bool languages_set(struct languages *languages, const char *code)
 	}
 	return false;
 }
+
+bool languages_is(const char *tag, const char *language)
+{
+	const size_t size = strlen(language);
+
+	return strncmp(tag, language, size) == 0 && (tag[size] == '\0' || tag[size] == '-');
+}

@@ -20,4 +20,7 @@ void languages_free(struct languages *languages); /* zeroed is fine */
 /* Sets a language. Returns false, and changes nothing, if there is no such language. */
 bool languages_set(struct languages *languages, const char *code);
 
+/* Returns whether a tag such as "pt-BR" is of that language ("pt"). */
+bool languages_is(const char *tag, const char *language);
+
 #endif

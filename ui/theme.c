@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "ui/languages.h"
+
 #define LINE_HEIGHT_MAX 1.5 /* of a single line, in multiples of its type size */
 
 #define RGB(r, g, b)                                                                               \
@@ -65,7 +67,7 @@ static const struct {
 static float script_size(const struct theme *theme)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++)
-		if (strncmp(theme->language, scripts[i].language, 2) == 0)
+		if (languages_is(theme->language, scripts[i].language))
 			return scripts[i].size;
 	return 1;
 }
@@ -73,7 +75,7 @@ static float script_size(const struct theme *theme)
 static float script_line(const struct theme *theme)
 {
 	for (size_t i = 0; i < ARRAY_COUNT(scripts); i++)
-		if (strncmp(theme->language, scripts[i].language, 2) == 0)
+		if (languages_is(theme->language, scripts[i].language))
 			return scripts[i].line;
 	return 1;
 }
@@ -122,7 +124,7 @@ bool theme_has_italics(const struct theme *theme)
 					       "my", "hi", "ar", "he", "fa" };
 
 	for (size_t i = 0; i < ARRAY_COUNT(without); i++)
-		if (strncmp(theme->language, without[i], 2) == 0)
+		if (languages_is(theme->language, without[i]))
 			return false;
 	return true;
 }
@@ -132,7 +134,7 @@ bool theme_is_right_to_left(const struct theme *theme)
 	static const char *const those[] = { "ar", "he", "fa", "ur" };
 
 	for (size_t i = 0; i < ARRAY_COUNT(those); i++)
-		if (strncmp(theme->language, those[i], 2) == 0)
+		if (languages_is(theme->language, those[i]))
 			return true;
 	return false;
 }

@@ -506,6 +506,29 @@ static void a_late_thumbnail_comes_into_its_row(void **state)
 	overlay_destroy(overlay);
 }
 
+/* Mapudungun is not Arabic, though both tags begin with "ar"; nor are Northern Kurdish Khmer, and
+ * Hiligaynon Hindi. */
+static void a_tag_is_read_to_its_end(void **state)
+{
+	static const struct {
+		const char *tag, *first_key;
+		bool from_right;
+	} cases[] = { { "ar", "ض", true },     { "ar-EG", "ض", true }, { "arn", "q", false },
+		      { "km-KH", "ក", false }, { "kmr", "q", false },  { "hil", "q", false } };
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		static struct keyboard keyboard;
+		struct theme theme;
+
+		CHECK(theme_init(&theme, 4, cases[i].tag) == 0);
+		CHECK(theme_is_right_to_left(&theme) == cases[i].from_right);
+		keyboard_layout(&keyboard, &theme, cases[i].tag, false, 800, 400);
+		CHECK(strcmp(keyboard.keys[0].text, cases[i].first_key) == 0);
+		theme_finish(&theme);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -516,6 +539,7 @@ int main(void)
 		cmocka_unit_test(a_letter_is_taken_back_and_the_field_emptied),
 		cmocka_unit_test(what_is_found_is_listed_and_tapped),
 		cmocka_unit_test(arabic_begins_at_the_right),
+		cmocka_unit_test(a_tag_is_read_to_its_end),
 		cmocka_unit_test(the_list_scrolls_and_stays_inside),
 		cmocka_unit_test(page_card_and_search_take_turns),
 		cmocka_unit_test(a_late_thumbnail_comes_into_its_row),
