@@ -4,7 +4,6 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <drm_fourcc.h>
 #include <errno.h>
 #include <gbm.h>
 #include <stdlib.h>
@@ -13,6 +12,7 @@
 #include "render/display/context.h"
 #include "render/display/display.h"
 #include "render/display/driver.h"
+#include "render/display/drm_buffer.h"
 #include "render/display/drm_panel.h"
 #include "render/display/fences.h"
 #include "render/display/gl.h"
@@ -26,25 +26,6 @@ struct drm_display {
 	EGLSurface egl_surface;
 	struct gbm_bo *shown, *next; /* borrowed from the surface until released */
 };
-
-static int create_surface(struct drm_display *drm)
-{
-	const uint32_t width = drm->panel.card.mode.hdisplay,
-		       height = drm->panel.card.mode.vdisplay;
-	const uint64_t linear = DRM_FORMAT_MOD_LINEAR;
-
-	if (drm->panel.card.modifier_count > 0)
-		drm->surface = gbm_surface_create_with_modifiers(
-			drm->gbm, width, height, GBM_FORMAT_XRGB8888, drm->panel.card.modifiers,
-			drm->panel.card.modifier_count);
-	if (!drm->surface)
-		drm->surface = gbm_surface_create_with_modifiers(drm->gbm, width, height,
-								 GBM_FORMAT_XRGB8888, &linear, 1);
-	if (!drm->surface)
-		drm->surface = gbm_surface_create(drm->gbm, width, height, GBM_FORMAT_XRGB8888,
-						  GBM_BO_USE_SCANOUT | GBM_BO_USE_RENDERING);
-	return drm->surface ? 0 : -ENODEV;
-}
 
 /* Returns the EGL configuration whose pixel format the plane scans out. A processor enlarges and
  * copies pictures several times faster into a surface without depth (gl_draw_square). */
@@ -112,9 +93,9 @@ static int create(struct display *display, const struct display_options *options
 	if (rc < 0)
 		return rc;
 	drm->gbm = gbm_create_device(drm->panel.card.fd);
-	rc = drm->gbm ? create_surface(drm) : -ENODEV;
-	if (rc == 0)
-		rc = create_context(drm);
+	if (drm->gbm)
+		drm->surface = drm_buffer_surface(&drm->panel.card, drm->gbm);
+	rc = drm->surface ? create_context(drm) : -ENODEV;
 	if (rc < 0) {
 		log_error("render", "board bug: no GLES2 context on the card (%s, EGL 0x%x)",
 			  drm->gbm ? gbm_device_get_backend_name(drm->gbm) : "no GBM",
@@ -179,39 +160,6 @@ static void begin(struct display *display)
 	gl_bind_framebuffer(0); /* the default framebuffer of the surface */
 }
 
-static void forget_framebuffer(struct gbm_bo *bo, void *data)
-{
-	drmModeRmFB(gbm_device_get_fd(gbm_bo_get_device(bo)), (uint32_t)(uintptr_t)data);
-}
-
-/* Returns the KMS framebuffer of a buffer, created once and kept with it; 0: refused. */
-static uint32_t framebuffer_of(struct drm_display *drm, struct gbm_bo *bo)
-{
-	const uint32_t width = gbm_bo_get_width(bo), height = gbm_bo_get_height(bo);
-	const uint64_t modifier = gbm_bo_get_modifier(bo);
-	uint32_t handles[4] = { gbm_bo_get_handle(bo).u32 };
-	uint32_t strides[4] = { gbm_bo_get_stride(bo) };
-	uint32_t offsets[4] = { 0 };
-	uint64_t modifiers[4] = { modifier };
-	uint32_t fb = (uint32_t)(uintptr_t)gbm_bo_get_user_data(bo);
-	int rc = -1;
-
-	if (fb)
-		return fb;
-	if (drm->panel.card.modifier_count > 0 && modifier != DRM_FORMAT_MOD_INVALID &&
-	    gbm_bo_get_plane_count(bo) == 1)
-		rc = drmModeAddFB2WithModifiers(drm->panel.card.fd, width, height,
-						DRM_FORMAT_XRGB8888, handles, strides, offsets,
-						modifiers, &fb, DRM_MODE_FB_MODIFIERS);
-	if (rc < 0)
-		rc = drmModeAddFB2(drm->panel.card.fd, width, height, DRM_FORMAT_XRGB8888, handles,
-				   strides, offsets, &fb, 0);
-	if (rc < 0)
-		return 0;
-	gbm_bo_set_user_data(bo, (void *)(uintptr_t)fb, forget_framebuffer);
-	return fb;
-}
-
 static int present(struct display *display)
 {
 	struct drm_display *drm = display->state;
@@ -225,7 +173,9 @@ static int present(struct display *display)
 	drm->next = gbm_surface_lock_front_buffer(drm->surface);
 	if (!drm->next)
 		return -EIO;
-	fb = framebuffer_of(drm, drm->next);
+	fb = drm_buffer_framebuffer(&drm->panel.card, drm->next);
+	if (!fb)
+		log_error("render", "board bug: the card refuses the buffer of a picture");
 	rc = fb ? drm_panel_show(&drm->panel, fb, &shown) : -EIO;
 	if (!shown) {
 		gbm_surface_release_buffer(drm->surface, drm->next);
