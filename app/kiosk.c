@@ -678,7 +678,7 @@ int kiosk_run(struct kiosk *kiosk)
 	if (rc == -ENOTRECOVERABLE)
 		log_warn("app", "board bug: the GPU lost its context; the kiosk restarts");
 	else if (rc == -ESTALE)
-		log_warn("app", "another panel is connected; the kiosk restarts");
+		log_warn("app", "there is another panel or card; the kiosk restarts");
 	else if (rc < 0)
 		log_error("app", "stopping: %s: %s",
 			  kiosk->loop.failed ? kiosk->loop.failed : "the loop", strerror(-rc));

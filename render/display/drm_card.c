@@ -327,7 +327,18 @@ static int open_when_free(struct drm_card *out, const struct drm_card_options *o
 	return rc < 0 ? -ENODEV : 0;
 }
 
-/* Returns whether there is no card yet, or none that we may open. */
+static bool drives_panels(const char *device)
+{
+	const int fd = open(device, O_RDWR | O_CLOEXEC | O_NONBLOCK);
+	const bool drives = fd >= 0 && drmIsKMS(fd);
+
+	if (fd >= 0)
+		close(fd);
+	return drives;
+}
+
+/* Returns whether there is no card yet that drives panels, or none that we may open. On some boards
+ * the GPU is a card of its own, which may be there first. */
 static bool is_late(const struct drm_card_options *options)
 {
 	char path[32];
@@ -336,7 +347,7 @@ static bool is_late(const struct drm_card_options *options)
 		return false;
 	for (int i = 0; i < CARDS_MAX; i++) {
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
-		if (access(path, R_OK | W_OK) == 0)
+		if (drives_panels(path))
 			return false;
 	}
 	return true;
@@ -354,17 +365,32 @@ int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
 		if (is_late(options)) {
 			log_error(
 				"render",
-				"no graphics card in /dev/dri can be opened: check that the system "
-				"has its driver, and that this user is in the group video");
+				"no graphics card in /dev/dri that drives a panel can be opened: "
+				"check that the system has its driver, and that this user is in the "
+				"group video");
 			return -ENODEV;
 		}
 	}
 	return open_when_free(out, options);
 }
 
+/* Returns whether a panel is connected to a card that a new process would take. Of this one there
+ * is none, so it is not taken for another. */
+static bool is_on_another_card(const struct drm_card_options *options)
+{
+	struct drm_card other;
+	int taken;
+
+	if (options->device || open_any(&other, true, true, &taken, options) < 0)
+		return false;
+	drm_card_close(&other);
+	return true;
+}
+
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)
 {
 	drmModeRes *resources = drmModeGetResources(card->fd);
+	const bool is_gone = !resources && errno == ENODEV;
 	struct drm_card now = *card;
 	uint32_t crtc_bits;
 	uint64_t link = DRM_MODE_LINK_STATUS_GOOD;
@@ -372,12 +398,19 @@ enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_op
 
 	there = resources && choose_connector(&now, resources, true, options, &crtc_bits);
 	drmModeFreeResources(resources);
+	if (is_gone) {
+		log_warn("render", "the graphics card is gone");
+		return DRM_CARD_OTHER_PANEL;
+	}
 	if (!there) {
 		card->connected = false;
-		return DRM_CARD_NO_PANEL;
+		return is_on_another_card(options) ? DRM_CARD_OTHER_PANEL : DRM_CARD_NO_PANEL;
 	}
+	/* letters are as large as the width says; an EDID that cannot be read this time says none
+	 */
 	same = now.connector == card->connector && now.mode.hdisplay == card->mode.hdisplay &&
-	       now.mode.vdisplay == card->mode.vdisplay;
+	       now.mode.vdisplay == card->mode.vdisplay &&
+	       (now.width_mm == 0 || now.width_mm == card->width_mm);
 	if (!same)
 		return DRM_CARD_OTHER_PANEL;
 	property_id(card->fd, card->connector, DRM_MODE_OBJECT_CONNECTOR, "link-status", &link);

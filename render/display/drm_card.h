@@ -45,8 +45,8 @@ struct drm_card {
 };
 
 /* Opens a card and chooses its mode. Strings of the options are borrowed for the call. With
- * may_wait it blocks: up to half a minute for a first card to appear (where no device is named),
- * and as long for another program to release the card. -ENODEV: no free card with a connected
+ * may_wait it blocks: up to half a minute for a card that drives panels to appear (where no device
+ * is named), and as long for another program to release it. -ENODEV: no free card with a connected
  * panel; the log says why for each card. */
 must_check int drm_card_open(struct drm_card *out, const struct drm_card_options *options);
 /* Restores the picture from before, closes the card and frees what it holds. A card that was never
@@ -55,8 +55,10 @@ void drm_card_close(struct drm_card *card);
 
 enum drm_card_news {
 	DRM_CARD_NO_PANEL,
-	DRM_CARD_SAME_PANEL,  /* the size is unchanged; the rate may differ */
-	DRM_CARD_OTHER_PANEL, /* another size or another connector; *card is unchanged */
+	DRM_CARD_SAME_PANEL, /* the size is unchanged; the rate may differ */
+	/* another size, in pixels or mm, another connector or another card, or the card is gone;
+	 * *card is unchanged */
+	DRM_CARD_OTHER_PANEL,
 };
 
 /* Asks the card what is plugged in; options are those it was opened with. It may take tens of

@@ -1,8 +1,9 @@
-/* Opening a card that another program has, on a kernel that is played: libdrm's answers, the log
- * and a clock that only sleeping moves. The card is any node that opens. */
+/* Opening cards that another program has, and looking at what is plugged into them, on a kernel
+ * that is played: its nodes, libdrm's answers, the log and a clock that only sleeping moves. */
 #include "render/display/drm_card.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,12 +16,38 @@
 #include "base/log.h"
 #include "tests/check.h"
 
-enum { NEVER_MS = 1000000 };
+enum { NEVER_MS = 1000000, CARDS = 2, FDS_MAX = 1024 };
 
 static int64_t now_ms, free_ms; /* the card is free from free_ms on */
 static int opens, waits, errors;
-static bool has_panel;
 static char said[1024]; /* warnings and errors */
+
+/* /dev/dri/card0 and card1 */
+static struct played_card {
+	bool is_there, has_panel, is_gone;
+	bool only_renders;
+	int64_t from_ms; /* its driver has loaded */
+	int width_mm;
+} cards[CARDS], *card_of[FDS_MAX];
+
+int __real_open(const char *path, int flags, ...);
+int __wrap_open(const char *path, int flags, ...);
+
+int __wrap_open(const char *path, int flags, ...)
+{
+	int fd, number;
+
+	if (sscanf(path, "/dev/dri/card%d", &number) != 1)
+		return __real_open(path, flags, 0);
+	if (number >= CARDS || !cards[number].is_there || now_ms < cards[number].from_ms) {
+		errno = ENOENT;
+		return -1;
+	}
+	fd = __real_open("/dev/null", flags);
+	CHECK(fd >= 0 && fd < FDS_MAX);
+	card_of[fd] = &cards[number];
+	return fd;
+}
 
 int64_t clock_now_ms(void)
 {
@@ -62,6 +89,11 @@ int drmSetClientCap(int fd, uint64_t capability, uint64_t value)
 						   : 0; /* the old way needs no properties */
 }
 
+int drmIsKMS(int fd)
+{
+	return !card_of[fd]->only_renders;
+}
+
 /* Whoever opens a card that nobody has is its master; nobody else becomes it. */
 int drmIsMaster(int fd)
 {
@@ -82,7 +114,10 @@ drmModeResPtr drmModeGetResources(int fd)
 {
 	static drmModeRes resources;
 
-	(void)fd;
+	if (card_of[fd]->is_gone || card_of[fd]->only_renders) {
+		errno = card_of[fd]->is_gone ? ENODEV : EOPNOTSUPP;
+		return NULL;
+	}
 	resources = (drmModeRes){ .count_connectors = 1,
 				  .connectors = &connector_id,
 				  .count_crtcs = 1,
@@ -94,12 +129,13 @@ drmModeConnectorPtr drmModeGetConnector(int fd, uint32_t id)
 {
 	static drmModeConnector connector;
 
-	(void)fd;
-	connector = (drmModeConnector){ .connector_id = id,
-					.connection = has_panel ? DRM_MODE_CONNECTED
-								: DRM_MODE_DISCONNECTED,
-					.count_encoders = 1,
-					.encoders = &encoder_id };
+	connector =
+		(drmModeConnector){ .connector_id = id,
+				    .connection = card_of[fd]->has_panel ? DRM_MODE_CONNECTED
+									 : DRM_MODE_DISCONNECTED,
+				    .mmWidth = (uint32_t)card_of[fd]->width_mm,
+				    .count_encoders = 1,
+				    .encoders = &encoder_id };
 	return &connector;
 }
 
@@ -145,7 +181,8 @@ static struct drm_card card;
 
 static int open_card(bool may_wait)
 {
-	const struct drm_card_options options = { .device = "/dev/null", .may_wait = may_wait };
+	const struct drm_card_options options = { .device = "/dev/dri/card0",
+						  .may_wait = may_wait };
 	const int rc = drm_card_open(&card, &options);
 
 	if (rc == 0)
@@ -159,7 +196,8 @@ static int begin(void **state)
 	now_ms = 100000;
 	free_ms = 0;
 	opens = waits = errors = 0;
-	has_panel = true;
+	memset(cards, 0, sizeof(cards));
+	cards[0] = (struct played_card){ .is_there = true, .has_panel = true, .width_mm = 520 };
 	said[0] = '\0';
 	return 0;
 }
@@ -177,7 +215,7 @@ static void waits_for_a_card_that_another_program_has(void **state)
 	free_ms = now_ms + 7200;
 	CHECK(open_card(true) == 0);
 	CHECK(waits == 15 && opens == 16); /* opened anew each time: nothing else makes a master */
-	CHECK(errors == 0 && strstr(said, "another program uses /dev/null"));
+	CHECK(errors == 0 && strstr(said, "another program uses /dev/dri/card0"));
 	CHECK(!strstr(strstr(said, "waiting") + 1, "waiting")); /* said once */
 }
 
@@ -187,13 +225,13 @@ static void ends_with_the_cure_after_half_a_minute(void **state)
 	free_ms = NEVER_MS;
 	CHECK(open_card(true) == -ENODEV);
 	CHECK(now_ms == 130000 && errors == 1);
-	CHECK(strstr(said, "still uses /dev/null: end it") && strstr(said, "--device"));
+	CHECK(strstr(said, "still uses /dev/dri/card0: end it") && strstr(said, "--device"));
 }
 
 static void waits_for_a_card_without_a_panel_too(void **state)
 {
 	(void)state;
-	has_panel = false;
+	cards[0].has_panel = false;
 	free_ms = now_ms + 1000;
 	CHECK(open_card(true) == 0);
 	CHECK(waits == 2 && errors == 0);
@@ -204,9 +242,80 @@ static void where_a_window_will_do_nobody_waits(void **state)
 	(void)state;
 	free_ms = NEVER_MS;
 	CHECK(open_card(false) == -ENODEV);
-	CHECK(waits == 0 && errors == 1 && strstr(said, "/dev/null: another program uses it"));
-	has_panel = false;
+	CHECK(waits == 0 && errors == 1 && strstr(said, "/dev/dri/card0: another program uses it"));
+	cards[0].has_panel = false;
 	CHECK(open_card(false) == -ENODEV && waits == 0);
+}
+
+/* As on a Raspberry Pi, where the GPU and what drives the panel are two. */
+static void waits_for_the_card_that_drives_the_panel(void **state)
+{
+	const struct drm_card_options any = { .may_wait = true };
+
+	(void)state;
+	cards[1] = cards[0];
+	cards[1].from_ms = now_ms + 3000;
+	cards[0] = (struct played_card){ .is_there = true, .only_renders = true };
+	CHECK(drm_card_open(&card, &any) == 0 && card_of[card.fd] == &cards[1]);
+	CHECK(waits == 6 && errors == 0 && strstr(said, "no graphics card is found yet"));
+	drm_card_close(&card);
+}
+
+/* ---- looking again */
+
+static const struct drm_card_options any_card = { .may_wait = true };
+
+static enum drm_card_news look(void)
+{
+	const enum drm_card_news news = drm_card_look(&card, &any_card);
+
+	drm_card_close(&card);
+	return news;
+}
+
+static void a_panel_comes_and_goes(void **state)
+{
+	(void)state;
+	cards[0].has_panel = false;
+	CHECK(drm_card_open(&card, &any_card) == 0 && !card.connected);
+	CHECK(look() == DRM_CARD_NO_PANEL);
+	cards[0].has_panel = true;
+	CHECK(drm_card_open(&card, &any_card) == 0 && card.connected);
+	CHECK(look() == DRM_CARD_SAME_PANEL);
+}
+
+/* The terminal was on before the panel, which hangs on the second card. */
+static void a_panel_on_another_card_asks_for_another_process(void **state)
+{
+	(void)state;
+	cards[0].has_panel = false;
+	cards[1] = (struct played_card){ .is_there = true };
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[0]);
+	CHECK(look() == DRM_CARD_NO_PANEL);
+	CHECK(drm_card_open(&card, &any_card) == 0);
+	cards[1].has_panel = true;
+	CHECK(look() == DRM_CARD_OTHER_PANEL);
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[1]);
+	CHECK(look() == DRM_CARD_SAME_PANEL);
+}
+
+static void a_card_that_is_gone_asks_for_another_process(void **state)
+{
+	(void)state;
+	CHECK(drm_card_open(&card, &any_card) == 0);
+	cards[0].is_gone = true;
+	CHECK(look() == DRM_CARD_OTHER_PANEL && strstr(said, "the graphics card is gone"));
+}
+
+static void a_panel_of_another_width_is_another_one(void **state)
+{
+	(void)state;
+	CHECK(drm_card_open(&card, &any_card) == 0 && card.width_mm == 520);
+	cards[0].width_mm = 0; /* the EDID could not be read */
+	CHECK(look() == DRM_CARD_SAME_PANEL);
+	CHECK(drm_card_open(&card, &any_card) == 0 && card.width_mm == 0);
+	cards[0].width_mm = 1210;
+	CHECK(look() == DRM_CARD_OTHER_PANEL);
 }
 
 int main(void)
@@ -217,6 +326,11 @@ int main(void)
 		cmocka_unit_test_setup(ends_with_the_cure_after_half_a_minute, begin),
 		cmocka_unit_test_setup(waits_for_a_card_without_a_panel_too, begin),
 		cmocka_unit_test_setup(where_a_window_will_do_nobody_waits, begin),
+		cmocka_unit_test_setup(waits_for_the_card_that_drives_the_panel, begin),
+		cmocka_unit_test_setup(a_panel_comes_and_goes, begin),
+		cmocka_unit_test_setup(a_panel_on_another_card_asks_for_another_process, begin),
+		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
+		cmocka_unit_test_setup(a_panel_of_another_width_is_another_one, begin),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
