@@ -216,8 +216,12 @@ int outline_begin(struct outline *outline, const struct gl_target *picture, int 
 	if (rc < 0)
 		return rc;
 	gl_target_bind(&outline->mask);
-	glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-				  picture->depth);
+	if (picture->depths)
+		glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+				       picture->depths, 0);
+	else
+		glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
+					  picture->depth);
 	const struct gl_place all = { .framebuffer = outline->mask.framebuffer };
 	limit(outline, &all, picture->width_px, picture->height_px, MASK_PX);
 	glClearColor(0, 0, 0, 0);

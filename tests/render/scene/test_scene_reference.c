@@ -402,6 +402,25 @@ static void a_warped_picture_has_the_mark(void **state)
 	CHECK(bold > 50 && bold < PIXELS / 8);
 }
 
+/* The far side of a pillar. */
+static void a_warped_picture_has_no_mark_of_what_is_hidden(void **state)
+{
+	static const struct scene_mark hidden = { .region = { .kind = REGION_BOX,
+							      .centre_m = { 3, -4.05f, 2.4f },
+							      .half_m = { 0.1f, 0.65f, 2.1f } } };
+	static uint8_t marked[4 * PIXELS];
+
+	(void)state;
+	settle();
+	for (int i = 1; i <= 12; i++)
+		draw_aside(0.01f * (float)i, slices, &hidden);
+	CHECK(stage.scene->references.has_shown);
+	memcpy(marked, stage.seen, sizeof(marked));
+	for (int i = 1; i <= 12; i++)
+		draw_aside(0.01f * (float)i, slices, NULL);
+	CHECK(pixels_changed(stage.seen, marked, 60) < 20);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -423,6 +442,8 @@ int main(void)
 						strike),
 		cmocka_unit_test_setup_teardown(a_board_with_time_is_sharp_at_once, raise, strike),
 		cmocka_unit_test_setup_teardown(a_warped_picture_has_the_mark, raise, strike),
+		cmocka_unit_test_setup_teardown(a_warped_picture_has_no_mark_of_what_is_hidden,
+						raise, strike),
 	};
 	int failed;
 
