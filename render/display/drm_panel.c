@@ -240,6 +240,8 @@ int drm_panel_dispatch(struct drm_panel *panel, bool *flipped)
 	}
 	if (panel->flip_pending && !panel->away &&
 	    clock_now_ms() - panel->flip_asked_ms > FLIP_TIMEOUT_MS) {
+		if (seems_changed(panel)) /* and no event said so yet */
+			return look(panel, false);
 		log_error("render", "board bug: a page flip did not complete within a second");
 		return -ETIMEDOUT;
 	}
@@ -264,7 +266,13 @@ static int refused(struct drm_panel *panel, int rc)
 		return 0;
 	}
 	if (step != DRM_PANEL_LOOK) {
-		log_error("render", "the panel refused a picture: %s", strerror(-rc));
+		log_error("render", "the panel refused a picture of %d x %d at %u Hz: %s%s",
+			  panel->card.mode.hdisplay, panel->card.mode.vdisplay,
+			  panel->card.mode.vrefresh, strerror(-rc),
+			  rc == -ENODEV || rc == -ENOMEM
+				  ? ""
+				  : "; give another mode with --size, or in section [panel] of "
+				    "gopura.conf");
 		return rc;
 	}
 	panel->refusals++;
@@ -302,5 +310,10 @@ int drm_panel_sleep(struct drm_panel *panel, bool asleep)
 	panel->stale = true;
 	if (drm_card_wake(&panel->card) < 0)
 		log_debug("render", "the panel is woken by a picture instead of DPMS");
-	return look(panel, true);
+	/* A panel that disconnected in its sleep may come back only for a signal: it is given one,
+	 * and looked for after that. */
+	if (drm_card_look(&panel->card, &panel->options) == DRM_CARD_OTHER_PANEL)
+		return -ESTALE;
+	plan_look(panel);
+	return 0;
 }

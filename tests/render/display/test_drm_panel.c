@@ -391,14 +391,41 @@ static void sleeps_and_wakes_with_its_mode(void **state)
 	CHECK(card.mode_sets == 2);
 }
 
-static void wakes_to_a_panel_that_went_in_its_sleep(void **state)
+/* It may sleep so deeply that only a signal wakes it. */
+static void a_panel_that_went_in_its_sleep_gets_a_signal(void **state)
 {
 	(void)state;
 	show_and_flip();
 	CHECK(drm_panel_sleep(&panel, true) == 0);
+	card.connected = false;
 	card.news = DRM_CARD_NO_PANEL;
 	CHECK(drm_panel_sleep(&panel, false) == 0);
+	CHECK(!drm_panel_dark(&panel) && drm_panel_take_stale(&panel));
+	show_and_flip();
+	CHECK(card.mode_sets == 2);
+	now_ms += 5000;
+	turn();
 	CHECK(drm_panel_dark(&panel) && drm_panel_wait_ms(&panel) == 2000);
+}
+
+static void wakes_to_another_panel(void **state)
+{
+	(void)state;
+	show_and_flip();
+	CHECK(drm_panel_sleep(&panel, true) == 0);
+	card.news = DRM_CARD_OTHER_PANEL;
+	CHECK(drm_panel_sleep(&panel, false) == -ESTALE);
+}
+
+static void a_flip_may_hang_for_want_of_a_panel(void **state)
+{
+	(void)state;
+	show(true);
+	card.connected = false; /* of which there was no event */
+	card.news = DRM_CARD_NO_PANEL;
+	now_ms += 1001;
+	turn();
+	CHECK(drm_panel_dark(&panel));
 }
 
 static void says_when_a_panel_cannot_sleep(void **state)
@@ -438,7 +465,9 @@ int main(void)
 		CASE(a_refusal_for_want_of_a_panel_is_no_fault),
 		CASE(a_card_that_is_gone_is_a_fault),
 		CASE(sleeps_and_wakes_with_its_mode),
-		CASE(wakes_to_a_panel_that_went_in_its_sleep),
+		CASE(a_panel_that_went_in_its_sleep_gets_a_signal),
+		CASE(wakes_to_another_panel),
+		CASE(a_flip_may_hang_for_want_of_a_panel),
 		CASE(says_when_a_panel_cannot_sleep),
 		CASE(decides_after_a_look),
 	};
