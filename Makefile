@@ -283,6 +283,7 @@ $(BUILD)/tests/pipeline/release/test_renewal: EXTRA += -Wl,--wrap=clock_wall_s
 $(BUILD)/tests/pipeline/keys/test_keys $(BUILD)/tests/pipeline/keys/test_keys_exchange: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkdir write fsync rename)
 $(BUILD)/tests/tools/hurried_kiosk: EXTRA += $(addprefix -Wl$(comma)--wrap=,clock_now_us clock_now_ms epoll_wait timerfd_settime frame_draw gl_place_bind gl_target_bind fingers_on_touch)
 $(BUILD)/tests/curator/store/test_documents: EXTRA += -Wl,--wrap=rename,--wrap=fsync
+$(BUILD)/tests/app/modes/test_self_test: EXTRA += $(addprefix -Wl$(comma)--wrap=,display_present display_ready display_take_stale)
 $(BUILD)/tests/render/display/test_drm_card: EXTRA += -Wl,--wrap=open
 $(BUILD)/tests/system/test_disk_table: EXTRA += -Wl,--wrap=pwrite,--wrap=fsync
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(ARCHIVE) | $(CATALOGUES)

@@ -84,11 +84,10 @@ static void check_settings(struct self_test *test, struct options *options)
 
 /* ---- panel and GPU */
 
-/* Presents one picture and waits until it is on the panel. Returns 0, -ETIMEDOUT or a negative
- * errno. */
-static int flip(struct display *display)
+/* Presents one picture and waits until the panel is ready for the next. Returns 0, -ETIMEDOUT or a
+ * negative errno. */
+static int present(struct display *display, int64_t until_ms)
 {
-	const int64_t until_ms = clock_now_ms() + FLIP_MOST_MS;
 	int rc;
 
 	display_begin(display);
@@ -103,6 +102,18 @@ static int flip(struct display *display)
 		if (poll(&wait, 1, 100) >= 0)
 			rc = display_dispatch(display);
 	}
+	return rc;
+}
+
+/* Presents pictures until one is on the panel: one that was refused is to be drawn again. */
+static int flip(struct display *display)
+{
+	const int64_t until_ms = clock_now_ms() + FLIP_MOST_MS;
+	int rc;
+
+	do
+		rc = present(display, until_ms);
+	while (rc == 0 && display_take_stale(display));
 	return rc;
 }
 
