@@ -135,20 +135,30 @@ static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
 	return bits;
 }
 
-/* Chooses the first connector of that name with a panel. Where connected is false, the first of
- * that name. */
-static bool choose_connector(struct drm_card *card, const drmModeRes *resources, bool connected,
-			     const struct drm_card_options *options, uint32_t *crtc_bits)
+/* How sure it must be that a panel is connected. Some connectors cannot tell, such as VGA behind a
+ * bridge; they are used where no other one has a panel (drm_mode.h of the kernel). */
+enum presence { PRESENT, PERHAPS_PRESENT, PRESENT_OR_NOT };
+
+static bool is_present(const drmModeConnector *connector, enum presence least)
+{
+	return least == PRESENT_OR_NOT || connector->connection == DRM_MODE_CONNECTED ||
+	       (least == PERHAPS_PRESENT && connector->connection != DRM_MODE_DISCONNECTED);
+}
+
+/* Chooses the first connector of that name with a panel. */
+static bool choose_connector(struct drm_card *card, const drmModeRes *resources,
+			     enum presence least, const struct drm_card_options *options,
+			     uint32_t *crtc_bits)
 {
 	for (int i = 0; i < resources->count_connectors; i++) {
 		drmModeConnector *connector =
 			drmModeGetConnector(card->fd, resources->connectors[i]);
 		const bool fits = connector && connector_has_name(connector, options->connector) &&
-				  (!connected || connector->connection == DRM_MODE_CONNECTED);
+				  is_present(connector, least);
 
 		if (fits) {
 			card->connector = connector->connector_id;
-			card->connected = connector->connection == DRM_MODE_CONNECTED;
+			card->connected = connector->connection != DRM_MODE_DISCONNECTED;
 			card->width_mm = (int)connector->mmWidth;
 			choose_mode(card, connector, &options->mode);
 			*crtc_bits = possible_crtcs(card->fd, connector);
@@ -216,7 +226,7 @@ static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint3
 	return -ENODEV;
 }
 
-static int open_card(struct drm_card *card, const char *device, bool connected,
+static int open_card(struct drm_card *card, const char *device, enum presence least,
 		     const struct drm_card_options *options)
 {
 	drmModeRes *resources;
@@ -232,7 +242,7 @@ static int open_card(struct drm_card *card, const char *device, bool connected,
 	resources = drmModeGetResources(card->fd);
 	if (!resources)
 		rc = -ENODEV; /* a render-only card; another card drives the panel */
-	else if (!choose_connector(card, resources, connected, options, &crtc_bits))
+	else if (!choose_connector(card, resources, least, options, &crtc_bits))
 		rc = -ENXIO;
 	else if (!drmIsMaster(card->fd) && drmSetMaster(card->fd) < 0)
 		rc = -EBUSY;
@@ -260,7 +270,7 @@ static const char *why_not(int rc)
 
 /* Tries each card. Returns -EBUSY if another program uses one that would do; *taken is then its
  * number. */
-static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
+static int open_any(struct drm_card *out, enum presence least, bool told, int *taken,
 		    const struct drm_card_options *options)
 {
 	char path[32];
@@ -270,7 +280,7 @@ static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 		int rc;
 
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
-		rc = open_card(out, options->device ? options->device : path, connected, options);
+		rc = open_card(out, options->device ? options->device : path, least, options);
 		if (rc == 0)
 			return 0;
 		if (rc == -EBUSY && result != -EBUSY) {
@@ -279,11 +289,12 @@ static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 		}
 		if (options->device) {
 			/* Not an error: it is waited for, or tried again without a panel. */
-			if (!options->may_wait || (rc != -EBUSY && (rc != -ENXIO || !connected)))
+			if (!options->may_wait ||
+			    (rc != -EBUSY && (rc != -ENXIO || least == PRESENT_OR_NOT)))
 				log_error("render", "%s: %s", options->device, why_not(rc));
 			return result;
 		}
-		if (rc != -ENOENT && connected && !told)
+		if (rc != -ENOENT && least == PRESENT && !told)
 			log_info("render", "%s: %s", path, why_not(rc));
 	}
 	return result;
@@ -292,11 +303,13 @@ static int open_any(struct drm_card *out, bool connected, bool told, int *taken,
 static int open_once(struct drm_card *out, bool told, int *taken,
 		     const struct drm_card_options *options)
 {
-	int rc = open_any(out, true, told, taken, options);
+	int rc = open_any(out, PRESENT, told, taken, options);
 
 	/* A panel that another program uses is better than a card without a panel. */
 	if (rc == -ENODEV && options->may_wait)
-		rc = open_any(out, false, told, taken, options);
+		rc = open_any(out, PERHAPS_PRESENT, told, taken, options);
+	if (rc == -ENODEV && options->may_wait)
+		rc = open_any(out, PRESENT_OR_NOT, told, taken, options);
 	return rc;
 }
 
@@ -381,7 +394,7 @@ static bool is_on_another_card(const struct drm_card_options *options)
 	struct drm_card other;
 	int taken;
 
-	if (options->device || open_any(&other, true, true, &taken, options) < 0)
+	if (options->device || open_any(&other, PRESENT, true, &taken, options) < 0)
 		return false;
 	drm_card_close(&other);
 	return true;
@@ -394,20 +407,22 @@ enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_op
 	struct drm_card now = *card;
 	uint32_t crtc_bits;
 	uint64_t link = DRM_MODE_LINK_STATUS_GOOD;
-	bool there, same;
+	bool there, elsewhere, same;
 
-	there = resources && choose_connector(&now, resources, true, options, &crtc_bits);
+	there = resources && choose_connector(&now, resources, PRESENT, options, &crtc_bits);
+	elsewhere = is_gone || (!there && is_on_another_card(options));
+	there = there || (resources &&
+			  choose_connector(&now, resources, PERHAPS_PRESENT, options, &crtc_bits));
 	drmModeFreeResources(resources);
-	if (is_gone) {
+	if (is_gone)
 		log_warn("render", "the graphics card is gone");
+	if (elsewhere)
 		return DRM_CARD_OTHER_PANEL;
-	}
 	if (!there) {
 		card->connected = false;
-		return is_on_another_card(options) ? DRM_CARD_OTHER_PANEL : DRM_CARD_NO_PANEL;
+		return DRM_CARD_NO_PANEL;
 	}
-	/* letters are as large as the width says; an EDID that cannot be read this time says none
-	 */
+	/* The width sets the size of letters; an EDID that cannot be read this time has none. */
 	same = now.connector == card->connector && now.mode.hdisplay == card->mode.hdisplay &&
 	       now.mode.vdisplay == card->mode.vdisplay &&
 	       (now.width_mm == 0 || now.width_mm == card->width_mm);

@@ -33,7 +33,8 @@ struct drm_card_properties {
 struct drm_card {
 	int fd; /* owned */
 	bool atomic;
-	bool connected, link_is_bad;     /* as of the last drm_card_look */
+	/* as of the last drm_card_look; a connector that cannot tell counts as connected */
+	bool connected, link_is_bad;
 	uint32_t connector, crtc, plane; /* plane is 0 without atomic */
 	drmModeModeInfo mode;
 	int width_mm;

@@ -188,7 +188,7 @@ static bool seems_changed(const struct drm_panel *panel)
 {
 	drmModeConnector *connector =
 		drmModeGetConnectorCurrent(panel->card.fd, panel->card.connector);
-	const bool connected = connector && connector->connection == DRM_MODE_CONNECTED;
+	const bool connected = connector && connector->connection != DRM_MODE_DISCONNECTED;
 
 	drmModeFreeConnector(connector);
 	return !connected;

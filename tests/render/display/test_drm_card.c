@@ -24,7 +24,7 @@ static char said[1024]; /* warnings and errors */
 
 /* /dev/dri/card0 and card1 */
 static struct played_card {
-	bool is_there, has_panel, is_gone;
+	bool is_there, has_panel, is_gone, cannot_tell;
 	bool only_renders;
 	int64_t from_ms; /* its driver has loaded */
 	int width_mm;
@@ -129,13 +129,14 @@ drmModeConnectorPtr drmModeGetConnector(int fd, uint32_t id)
 {
 	static drmModeConnector connector;
 
-	connector =
-		(drmModeConnector){ .connector_id = id,
-				    .connection = card_of[fd]->has_panel ? DRM_MODE_CONNECTED
-									 : DRM_MODE_DISCONNECTED,
-				    .mmWidth = (uint32_t)card_of[fd]->width_mm,
-				    .count_encoders = 1,
-				    .encoders = &encoder_id };
+	connector = (drmModeConnector){ .connector_id = id,
+					.connection = card_of[fd]->has_panel ? DRM_MODE_CONNECTED
+						      : card_of[fd]->cannot_tell
+							      ? DRM_MODE_UNKNOWNCONNECTION
+							      : DRM_MODE_DISCONNECTED,
+					.mmWidth = (uint32_t)card_of[fd]->width_mm,
+					.count_encoders = 1,
+					.encoders = &encoder_id };
 	return &connector;
 }
 
@@ -307,6 +308,23 @@ static void a_card_that_is_gone_asks_for_another_process(void **state)
 	CHECK(look() == DRM_CARD_OTHER_PANEL && strstr(said, "the graphics card is gone"));
 }
 
+/* VGA behind a bridge: used where no other connector has a panel. */
+static void a_connector_that_cannot_tell_is_used_at_last(void **state)
+{
+	(void)state;
+	cards[1] = (struct played_card){ .is_there = true, .has_panel = true };
+	cards[0] = (struct played_card){ .is_there = true, .cannot_tell = true };
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[1]);
+	drm_card_close(&card);
+	cards[1].has_panel = false;
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[0]);
+	CHECK(card.connected && look() == DRM_CARD_SAME_PANEL);
+	CHECK(!strstr(said, "no panel is connected"));
+	CHECK(drm_card_open(&card, &any_card) == 0);
+	cards[1].has_panel = true;
+	CHECK(look() == DRM_CARD_OTHER_PANEL);
+}
+
 static void a_panel_of_another_width_is_another_one(void **state)
 {
 	(void)state;
@@ -330,6 +348,7 @@ int main(void)
 		cmocka_unit_test_setup(a_panel_comes_and_goes, begin),
 		cmocka_unit_test_setup(a_panel_on_another_card_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
+		cmocka_unit_test_setup(a_connector_that_cannot_tell_is_used_at_last, begin),
 		cmocka_unit_test_setup(a_panel_of_another_width_is_another_one, begin),
 	};
 
