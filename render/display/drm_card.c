@@ -135,6 +135,19 @@ static uint32_t possible_crtcs(int fd, const drmModeConnector *connector)
 	return bits;
 }
 
+/* Returns the width of the panel, 0: not known. Many TVs have an aspect ratio in place of their
+ * size, as 16 x 9 mm or cm: none of so many pixels is so small. */
+static int find_width_mm(const drmModeConnector *connector, int width_px)
+{
+	static const uint32_t ratios[][2] = { { 160, 90 }, { 160, 100 }, { 16, 9 }, { 16, 10 } };
+
+	for (size_t i = 0; i < ARRAY_COUNT(ratios); i++)
+		if (connector->mmWidth == ratios[i][0] && connector->mmHeight == ratios[i][1] &&
+		    width_px >= 1920)
+			return 0;
+	return (int)connector->mmWidth;
+}
+
 /* How sure it must be that a panel is connected. Some connectors cannot tell, such as VGA behind a
  * bridge; they are used where no other one has a panel (drm_mode.h of the kernel). */
 enum presence { PRESENT, PERHAPS_PRESENT, PRESENT_OR_NOT };
@@ -159,8 +172,8 @@ static bool choose_connector(struct drm_card *card, const drmModeRes *resources,
 		if (fits) {
 			card->connector = connector->connector_id;
 			card->connected = connector->connection != DRM_MODE_DISCONNECTED;
-			card->width_mm = (int)connector->mmWidth;
 			choose_mode(card, connector, &options->mode);
+			card->width_mm = find_width_mm(connector, card->mode.hdisplay);
 			*crtc_bits = possible_crtcs(card->fd, connector);
 		}
 		drmModeFreeConnector(connector);

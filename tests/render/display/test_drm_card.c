@@ -135,6 +135,7 @@ drmModeConnectorPtr drmModeGetConnector(int fd, uint32_t id)
 							      ? DRM_MODE_UNKNOWNCONNECTION
 							      : DRM_MODE_DISCONNECTED,
 					.mmWidth = (uint32_t)card_of[fd]->width_mm,
+					.mmHeight = (uint32_t)card_of[fd]->width_mm * 9 / 16,
 					.count_encoders = 1,
 					.encoders = &encoder_id };
 	return &connector;
@@ -336,6 +337,23 @@ static void a_panel_of_another_width_is_another_one(void **state)
 	CHECK(look() == DRM_CARD_OTHER_PANEL);
 }
 
+/* Its letters would be those of a hand's breadth. */
+static void the_aspect_ratio_of_a_tv_is_no_width(void **state)
+{
+	const struct drm_card_options large = { .mode = { 1920, 1080, 0 } };
+	const struct drm_card_options little = { .mode = { 1024, 576, 0 } };
+
+	(void)state;
+	cards[0].width_mm = 160;
+	CHECK(drm_card_open(&card, &large) == 0 && card.width_mm == 0);
+	drm_card_close(&card);
+	CHECK(drm_card_open(&card, &little) == 0 && card.width_mm == 160);
+	drm_card_close(&card);
+	cards[0].width_mm = 1600;
+	CHECK(drm_card_open(&card, &large) == 0 && card.width_mm == 1600);
+	drm_card_close(&card);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -349,6 +367,7 @@ int main(void)
 		cmocka_unit_test_setup(a_panel_on_another_card_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_connector_that_cannot_tell_is_used_at_last, begin),
+		cmocka_unit_test_setup(the_aspect_ratio_of_a_tv_is_no_width, begin),
 		cmocka_unit_test_setup(a_panel_of_another_width_is_another_one, begin),
 	};
 
