@@ -27,35 +27,6 @@ struct drm_display {
 	struct gbm_bo *shown, *next; /* borrowed from the surface until released */
 };
 
-/* Returns the EGL configuration whose pixel format the plane scans out. A processor enlarges and
- * copies pictures several times faster into a surface without depth (gl_draw_square). */
-static EGLConfig choose_config(EGLDisplay egl)
-{
-	const EGLint wanted[] = { EGL_SURFACE_TYPE,
-				  EGL_WINDOW_BIT,
-				  EGL_RENDERABLE_TYPE,
-				  EGL_OPENGL_ES2_BIT,
-				  EGL_RED_SIZE,
-				  8,
-				  EGL_GREEN_SIZE,
-				  8,
-				  EGL_BLUE_SIZE,
-				  8,
-				  EGL_DEPTH_SIZE,
-				  driver_is_software(egl) ? 0 : 24,
-				  EGL_NONE };
-	EGLConfig configs[64];
-	EGLint count = 0, visual;
-
-	if (!eglChooseConfig(egl, wanted, configs, ARRAY_COUNT(configs), &count))
-		return NULL;
-	for (EGLint i = 0; i < count; i++)
-		if (eglGetConfigAttrib(egl, configs[i], EGL_NATIVE_VISUAL_ID, &visual) &&
-		    visual == GBM_FORMAT_XRGB8888)
-			return configs[i];
-	return NULL;
-}
-
 static int create_context(struct drm_display *drm)
 {
 	EGLConfig config;
@@ -64,7 +35,10 @@ static int create_context(struct drm_display *drm)
 	if (drm->egl == EGL_NO_DISPLAY || !eglInitialize(drm->egl, NULL, NULL))
 		return -ENODEV;
 	eglBindAPI(EGL_OPENGL_ES_API);
-	config = choose_config(drm->egl);
+	/* A processor enlarges and copies pictures several times faster into a surface without
+	 * depth (gl_draw_square). */
+	config = context_config(drm->egl, GBM_FORMAT_XRGB8888,
+				driver_is_software(drm->egl) ? 0 : 24);
 	if (!config)
 		return -ENODEV;
 	drm->context = context_create(drm->egl, config);
