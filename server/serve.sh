@@ -14,7 +14,13 @@ here=$(cd "$(dirname "$0")" && pwd)
 command -v nginx >/dev/null || { echo "serve.sh: nginx is missing (Debian: nginx-light)" >&2; exit 1; }
 release=$1 port=$2 run=$3
 shift 3
-taken() { (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
+host=localhost at=127.0.0.1 # where this machine reaches it
+case ${GOPURA_LISTEN:-} in
+'' | 0.0.0.0 | 127.0.0.1) ;;
+'[::]') at=::1 ;;
+*) host=$GOPURA_LISTEN at=${GOPURA_LISTEN#[} at=${at%]} ;;
+esac
+taken() { (exec 3<>"/dev/tcp/$at/$1") 2>/dev/null; }
 if [ "$port" = 0 ]; then
 	port=$((20000 + RANDOM % 12000))
 	while taken "$port"; do port=$((20000 + RANDOM % 12000)); done
@@ -27,12 +33,12 @@ rm -f "$run/url"
 "$here/setup.sh" "$release" "$port" "$run" "$@"
 run=$(cd "$run" && pwd)
 echo "serving $release"
-echo "url https://localhost:$port/"
+echo "url https://$host:$port/"
 echo "ca $run/ca.pem"
 # A child process writes the file once the port answers, so a program that waits for the file also waits for the server.
 (for _ in $(seq 100); do
 	if taken "$port"; then
-		echo "https://localhost:$port/" >"$run/url.new"
+		echo "https://$host:$port/" >"$run/url.new"
 		mv "$run/url.new" "$run/url"
 		break
 	fi

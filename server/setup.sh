@@ -10,7 +10,7 @@
 #
 # GOPURA_LISTEN  address to listen on, default 127.0.0.1 (0.0.0.0 for all)
 #
-# Copy RUN/ca.pem to the terminals. Its key stays in RUN/tls (mode 0600): keep that folder private.
+# Copy RUN/ca.pem to the terminals. Its key stays in RUN/tls (mode 0600): keep that folder private, and a copy of both.
 set -eu
 usage() { sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//;p}' "$0"; }
 [ "${1:-}" != --help ] || { usage; exit 0; }
@@ -31,18 +31,26 @@ run=$(cd "$run" && pwd)
 names="DNS:localhost,IP:127.0.0.1"
 for name in "$@"; do
 	case $name in
+	*:*) names="$names,IP:$name" ;;
 	*[!0-9.]*) names="$names,DNS:$name" ;;
 	*) names="$names,IP:$name" ;;
 	esac
 done
 ec() { openssl ecparam -name prime256v1 -genkey -noout -out "$1" && chmod 0600 "$1"; }
+fail() { echo "setup.sh: $*" >&2; exit 1; }
 cd "$run/tls"
-if [ ! -f ca.key ] || [ ! -f ../ca.pem ]; then
-	rm -f names server.pem
-	ec ca.key
-	openssl req -x509 -new -key ca.key -sha256 -days 10950 -subj "/CN=Gopura museum server $(date +%F)" \
+if [ ! -e ca.key ] && [ ! -e server.pem ]; then
+	ec ca.key.new
+	openssl req -x509 -new -key ca.key.new -sha256 -days 10950 -subj "/CN=Gopura museum server $(date +%F)" \
 		-addext basicConstraints=critical,CA:TRUE,pathlen:0 \
-		-addext keyUsage=critical,keyCertSign,cRLSign -out ../ca.pem
+		-addext keyUsage=critical,keyCertSign,cRLSign -out ../ca.pem.new
+	openssl x509 -in ../ca.pem.new -noout # openssl does not tell of a full disk
+	mv ../ca.pem.new ../ca.pem
+	mv ca.key.new ca.key
+elif ! openssl x509 -in ../ca.pem -noout 2>/dev/null; then
+	# Another authority, made silently, would be one that no terminal knows.
+	fail "$run/ca.pem is missing or damaged: copy it back from a terminal or a backup. If no terminal has it, remove" \
+		"$run/tls, and another one is made"
 fi
 lasts() { openssl x509 -in "$1" -noout -checkend $((365 * 86400)) >/dev/null; }
 until=$(openssl x509 -in ../ca.pem -noout -enddate | cut -d = -f 2)
@@ -51,7 +59,9 @@ lasts ../ca.pem ||
 	echo "setup.sh: WARNING: the certificate authority $run/ca.pem ends on $until. Then no terminal reaches this server" \
 		"any more. Give all terminals another one before: docs/server.md, Another certificate authority" >&2
 if [ ! -f server.pem ] || [ "$(cat names 2>/dev/null)" != "$names" ] || ! lasts server.pem; then
-	[ "$days" -gt 0 ] || { echo "setup.sh: an authority that has ended signs no certificate" >&2; exit 1; }
+	[ "$days" -gt 0 ] || fail "an authority that has ended signs no certificate; it ended on $until, and today is $(date)"
+	[ -s ca.key ] || fail "$run/tls/ca.key is missing: copy it back from a backup, or see docs/server.md, Another certificate authority"
+	rm -f names # what is interrupted here is made again
 	ec server.key
 	printf '%s\n' "subjectAltName=$names" basicConstraints=critical,CA:FALSE \
 		keyUsage=critical,digitalSignature extendedKeyUsage=serverAuth authorityKeyIdentifier=keyid >extensions

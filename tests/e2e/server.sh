@@ -86,6 +86,42 @@ setup another.name | grep -q 'WARNING: the certificate authority .* ends on' || 
 openssl verify -CAfile "$folder/run2/ca.pem" "$folder/run2/tls/server.pem" >/dev/null || fail "not signed by it"
 lasts "$folder/run2/tls/server.pem" 298 || fail "a certificate that ends too soon"
 ! lasts "$folder/run2/tls/server.pem" 300 || fail "a certificate that outlives its authority"
+# An authority that is missing or damaged is never replaced by one that no terminal knows.
+for damage in 'rm ca.pem' ': >ca.pem'; do
+	cp "$folder/run2/ca.pem" "$folder/kept.pem"
+	(cd "$folder/run2" && eval "$damage")
+	said=$(setup) && fail "another authority after: $damage"
+	grep -q "run2/ca.pem is missing or damaged" <<<"$said" || fail "after $damage it says: $said"
+	cp "$folder/kept.pem" "$folder/run2/ca.pem"
+	setup >"$folder/log" || fail "after $damage the old authority does not come back: $(cat "$folder/log")"
+done
+mv "$folder/run2/tls/ca.key" "$folder/ca.key"
+setup third.name | grep -q 'tls/ca.key is missing' || fail "no word of a key that is missing"
+mv "$folder/ca.key" "$folder/run2/tls/ca.key"
+
+# A disk that is full, or a kill, in the middle of it: the next start makes it whole.
+mkdir "$folder/bin"
+cat >"$folder/bin/openssl" <<-IN
+	#!/bin/sh
+	case "\$*" in *"\$FAILS"*) exit \$STATUS ;; esac
+	exec $(command -v openssl) "\$@"
+IN
+chmod +x "$folder/bin/openssl"
+! (PATH=$folder/bin:$PATH FAILS='x509 -req' STATUS=1 setup third.name) >"$folder/log" || fail "a certificate that was not made"
+setup another.name >"$folder/log" || fail "after a certificate that was not made: $(cat "$folder/log")"
+rm -r "$folder/run2"
+! (PATH=$folder/bin:$PATH FAILS='req -x509' STATUS=0 setup) >"$folder/log" || fail "an authority that was not written"
+setup >"$folder/log" || fail "after an authority that was not written: $(cat "$folder/log")"
+
+# Addresses of both kinds, and another one to listen at.
+setup 192.0.2.7 2001:db8::5 >"$folder/log" || fail "two addresses: $(cat "$folder/log")"
+openssl x509 -in "$folder/run2/tls/server.pem" -noout -ext subjectAltName | grep -q 'IP Address:192.0.2.7, IP Address:2001:DB8:0:0:0:0:0:5' ||
+	fail "the addresses are not in the certificate"
+stop_server
+GOPURA_LISTEN=127.0.0.2 start_server "$release" "$folder/run2" 0 127.0.0.2
+[ "${server_url#https://127.0.0.2:}" != "$server_url" ] || fail "the address is $server_url"
+get "${server_url}release.json" >/dev/null || fail "it does not listen where it should"
+stop_server
 rm -r "$folder/run2"
 cat "$run/ca.pem" >"$folder/both.pem"
 stop_server
