@@ -1,6 +1,9 @@
 /* Collects a mebibyte before it writes. */
 #include "base/chunk_file.h"
 
+#include <errno.h>
+#include <unistd.h>
+
 enum { CHUNK_BYTES = 1 << 20 };
 
 void chunk_file_begin(struct chunk_file *file, const char *path)
@@ -30,6 +33,8 @@ bool chunk_file_pass(struct chunk_file *file)
 int chunk_file_end(struct chunk_file *file)
 {
 	write_out(file);
+	if (file->error == 0 && fsync(file->fd) < 0)
+		file->error = -errno;
 	buffer_finish(&file->chunk);
 	return file->fd < 0 ? file->error
 			    : bytes_end_file(file->fd, file->temporary, file->path, file->error);

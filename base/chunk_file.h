@@ -17,8 +17,8 @@ struct chunk_file {
 void chunk_file_begin(struct chunk_file *file, const char *path);
 /* Writes the chunk once it is large. Returns whether there was no error so far. */
 bool chunk_file_pass(struct chunk_file *file);
-/* Writes what is left and gives the file its name. Returns 0 or the first error; then the file that
- * was there is as before. Does not call fsync. */
+/* Writes what is left, to the disk itself, and gives the file its name. Returns 0 or the first
+ * error; then the file that was there is as before. */
 must_check int chunk_file_end(struct chunk_file *file);
 
 #endif
