@@ -143,6 +143,12 @@ static int read_numbers(const char *text, double *out, int wanted, const char **
 
 /* ---- alignments: a count; for each scan its name, a line with # and four rows; then 0 */
 
+/* Returns where the text begins, past the mark that Windows puts before UTF-8. */
+static char *past_mark(char *text)
+{
+	return strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text;
+}
+
 /* Returns the next line that is not empty, without white space around it; NULL at the end. */
 static char *next_line(struct reading *reading)
 {
@@ -211,7 +217,7 @@ static int read_aln(struct reading *reading, char *text)
 	unsigned long count;
 	int rc = 0;
 
-	reading->at = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? text + 3 : text;
+	reading->at = past_mark(text);
 	line = next_content(reading);
 	count = line ? strtoul(line, &end, 10) : 0;
 	if (!line || !isdigit((unsigned char)line[0]) || *end || count == 0)
@@ -239,11 +245,18 @@ static int is_there(const struct reading *reading, const char *name)
 {
 	struct stat status;
 	char *path = NULL;
-	const int rc = join_path(reading, reading->line, name, &path);
-	const bool found = rc == 0 && stat(path, &status) == 0;
+	int rc = join_path(reading, reading->line, name, &path);
 
+	if (rc == 0)
+		rc = stat(path, &status) == 0 ? 1 : -errno;
+	if (rc == -ENOENT || rc == -ENOTDIR)
+		rc = 0;
+	else if (rc < 0 && path)
+		diagnostics_add(reading->diagnostics, rc, reading->path, reading->line,
+				"scan %s: %s; correct that, or remove the line", path,
+				strerror(-rc));
 	free(path);
-	return rc == 0 ? found : rc;
+	return rc;
 }
 
 /* Adds the scan of a line. */
@@ -264,7 +277,7 @@ static int read_conf(struct reading *reading, char *text)
 	const char *line;
 	int rc = 0;
 
-	reading->at = text;
+	reading->at = past_mark(text);
 	while (rc == 0 && (line = next_line(reading))) {
 		rc = alignment_conf_parse(&parsed, line);
 		if (rc < 0)

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
@@ -29,6 +30,8 @@ static int read_text(struct alignment *out, const char *name, const char *text, 
 	snprintf(folder, sizeof(folder), "%.*s/in", (int)(strrchr(path, '/') - path), path);
 	CHECK(mkdir(folder, 0700) == 0);
 	scan_write_beside(path, "in/d.ply", "ply\n", 4);
+	snprintf(folder, sizeof(folder), "%.*s/loop", (int)(strrchr(path, '/') - path), path);
+	CHECK(symlink("loop", folder) == 0); /* what it is cannot be seen */
 	rc = alignment_read(out, path, diagnostics);
 	if (rc < 0 && !strstr(diagnostics->first.text, path))
 		fail_msg("%s is not named: '%s'", path, diagnostics->first.text);
@@ -136,6 +139,12 @@ static void refuses_with_line_and_cure(void **state)
 		{ "none.conf", "camera 0 0 0\n", "places no scan" },
 		{ "outside.conf", "bmesh a.ply 0 0 0 0 0 0 1\nmesh ../b.ply 0 0 0 0 0 0 1\n",
 		  ":2: scan ../b.ply lies outside" },
+		{ "loop.conf", "bmesh a.ply 0 0 0 0 0 0 1\nmesh loop 0 0 0 0 0 0 1\n",
+		  ":2: scan " },
+		{ "mark.conf",
+		  "\xef\xbb\xbf"
+		  "bmesh a.ply 0 0 0 0 0 1\n",
+		  ":1: expected: bmesh NAME" },
 		{ "gone.conf", "bmesh gone.ply 0 0 0 0 0 0 1\n", ":1: scan " },
 		{ "far.conf", "bmesh a.ply 1e300 0 0 0 0 0 1\n", "beyond 1e12" },
 		{ "e.aln", "", "must begin with the number of its scans" },
