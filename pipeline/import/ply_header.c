@@ -113,8 +113,8 @@ static int read_line(struct ply *ply, char line[PLY_LINE_MAX], struct diagnostic
 				  "the header goes on for over 1 MiB; is this a PLY?");
 	input->at++;
 	if (c == '\r' && input->line == 1)
-		ply->cr_only = ply_input_peek(input) != '\n';
-	if (c == '\r' && !ply->cr_only && ply_input_peek(input) == '\n')
+		input->cr_only = ply_input_peek(input) != '\n';
+	if (c == '\r' && !input->cr_only && ply_input_peek(input) == '\n')
 		input->at++;
 	return 0;
 }

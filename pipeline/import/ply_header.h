@@ -78,7 +78,6 @@ struct ply {
 	struct ply_element elements[PLY_ELEMENTS_MAX];
 	struct ply_summary summary;
 	char *textures[PLY_TEXTURES_MAX]; /* owned */
-	bool cr_only;                     /* lines end with CR alone */
 	bool gopura_open;
 	uint64_t trailing, lines_skipped, triangles;
 	/* Corners of the current polygon, PLY_CORNERS_MAX each; owned. */

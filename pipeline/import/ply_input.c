@@ -93,6 +93,11 @@ static bool is_blank(int c)
 	return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
+static bool is_line_end(const struct ply_input *input, int c)
+{
+	return c == '\n' || (c == '\r' && input->cr_only);
+}
+
 /* Parses a decimal number exactly if its digits fit into 53 bits and the power of ten is exact in a
  * double (Clinger's fast path, 1990). Returns false otherwise; strtod then does it, ten times
  * slower. */
@@ -138,9 +143,11 @@ enum ply_token ply_input_number(struct ply_input *input, bool cross_lines, doubl
 	int c;
 
 	while ((c = ply_input_peek(input)) >= 0 && (is_blank(c) || c == '\n')) {
-		if (c == '\n' && !cross_lines)
+		const bool ends = is_line_end(input, c);
+
+		if (ends && !cross_lines)
 			return PLY_TOKEN_LINE_END;
-		input->line += c == '\n';
+		input->line += ends;
 		input->at++;
 	}
 	if (c < 0)

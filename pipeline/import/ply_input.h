@@ -20,7 +20,8 @@ struct ply_input {
 	uint64_t file_bytes; /* from fstat */
 	/* line number of the next byte, from 1; counted in the header and in ASCII bodies */
 	uint64_t line;
-	int error; /* error of read(2); kept */
+	bool cr_only; /* lines end with CR alone; set by the header */
+	int error;    /* error of read(2); kept */
 };
 
 /* fd is taken, even on failure; call ply_input_finish. -EISDIR, -ESPIPE: not a regular file.

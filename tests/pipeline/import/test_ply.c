@@ -255,6 +255,46 @@ static void ends_of_header_lines_do_not_eat_data(void **state)
 	}
 }
 
+/* As Windows, Unix and old Macs write them. */
+static void lines_of_text_end_as_those_of_the_header_do(void **state)
+{
+	static const char *const ends[] = { "\n", "\r\n", "\r" };
+	static const char *const lines[] = {
+		"ply",
+		"format ascii 1.0",
+		"element vertex 3",
+		"property float x",
+		"property float y",
+		"property float z",
+		"element face 1",
+		"property list uchar int vertex_indices",
+		"end_header",
+		"0 0 1",
+		"1 0 2 ",
+		"0 1 3",
+		"3 0 1 2",
+	};
+	struct seen seen;
+	char text[512];
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(ends); i++) {
+		size_t size = 0;
+
+		for (size_t k = 0; k < ARRAY_COUNT(lines); k++)
+			size += (size_t)snprintf(text + size, sizeof(text) - size, "%s%s", lines[k],
+						 ends[i]);
+		if (read_text(&seen, text) < 0)
+			fail_msg("%zu: %s", i, seen.diagnostics.first.text);
+		CHECK(seen.vertex[2].position[2] == 3 && seen.trailing == 0);
+		CHECK(corners_are(&seen.triangle[0], 0, 1, 2));
+		/* and a fault has its line */
+		text[size - strlen(ends[i]) - 1] = 'x';
+		CHECK(read_text(&seen, text) == -EBADMSG);
+		CHECK(strstr(seen.diagnostics.first.text, ":13: face 0: 'x' is not a number"));
+	}
+}
+
 /* Each is refused, with words that say where and what. */
 static void refuses_what_cannot_be_right(void **state)
 {
@@ -547,6 +587,7 @@ int main(void)
 		cmocka_unit_test(alpha_is_open_sky_only_by_our_comment),
 		cmocka_unit_test(reads_places_in_pictures),
 		cmocka_unit_test(ends_of_header_lines_do_not_eat_data),
+		cmocka_unit_test(lines_of_text_end_as_those_of_the_header_do),
 		cmocka_unit_test(refuses_what_cannot_be_right),
 		cmocka_unit_test(says_why_a_scan_has_no_surface),
 		cmocka_unit_test(reads_range_grids_normals_and_confidence),
