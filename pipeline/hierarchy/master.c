@@ -65,7 +65,9 @@ struct written {
 };
 
 struct writer {
-	int fd;
+	const char *path; /* borrowed */
+	char temporary[BYTES_PATH_MAX];
+	int fd;                  /* of the temporary file, once it has an object; negative before */
 	struct written *objects; /* owned; in the order in which they are made */
 	uint32_t count, room;
 };
@@ -76,6 +78,12 @@ static int write_object(void *user, struct bytes object, float loss_m4)
 	size_t done = 0;
 	int rc = ARRAY_RESERVE(writer->objects, writer->room, writer->count + 1, UINT32_MAX);
 
+	/* Objects come at the end of long work. A file from its beginning would look as if a killed
+	 * build had left it: `build` removes those. */
+	if (rc == 0 && writer->fd < 0) {
+		writer->fd = bytes_begin_file(writer->temporary, writer->path);
+		rc = writer->fd < 0 ? writer->fd : 0;
+	}
 	if (rc < 0)
 		return rc;
 	writer->objects[writer->count++] = (struct written){ (uint32_t)object.size, loss_m4 };
@@ -171,21 +179,18 @@ static int build_files(const char *folder, const char *groups, const char *block
 		       const struct mesh *mesh, struct hash stamp,
 		       const struct master_options *options, struct master_report *report)
 {
-	struct writer writer = { .fd = -1 };
+	struct writer writer = { .path = groups, .fd = -1 };
 	const struct multires_sink sink = { write_object, &writer };
 	struct master head = { .stamp = stamp, .source_triangles = mesh->triangle_count };
 	struct block_build build;
-	char temporary[BYTES_PATH_MAX];
 	int rc;
 
-	writer.fd = bytes_begin_file(temporary, groups);
-	if (writer.fd < 0)
-		return writer.fd;
 	rc = block_build(&build, blocks, mesh, &options->multires, options->material_colours,
 			 options->substance, &sink);
 	if (rc == 0 && fsync(writer.fd) < 0)
 		rc = -errno;
-	rc = bytes_end_file(writer.fd, temporary, groups, rc);
+	if (writer.fd >= 0)
+		rc = bytes_end_file(writer.fd, writer.temporary, groups, rc);
 	if (rc == 0) {
 		take_report(report, &head, &build);
 		rc = write_index(folder, &head, &build.hierarchy, &writer);

@@ -353,6 +353,23 @@ static void a_killed_shard_costs_nothing(void **state)
 	check_against_one_machine(&home);
 }
 
+/* `build` begins by removing what looks left over (docs/cluster.md). */
+static void a_build_that_sweeps_costs_a_slow_shard_nothing(void **state)
+{
+	struct home home;
+	pid_t slow;
+
+	(void)state;
+	home_of_shards(&home);
+	slow = begin_shard(home.master, 0, 2);
+	wait_for_the_first_node(&home);
+	CHECK(kill(slow, SIGSTOP) == 0);
+	bytes_sweep_folder(home.master, INT64_MAX);
+	CHECK(kill(slow, SIGCONT) == 0);
+	CHECK(end_shard(slow) == 0);
+	check_against_one_machine(&home);
+}
+
 /* That it was there before is no excuse for a build that failed. */
 static void a_failure_is_told_where_a_master_is_there(void **state)
 {
@@ -380,6 +397,7 @@ int main(void)
 		cmocka_unit_test(shards_at_once_make_the_same_bytes),
 		cmocka_unit_test(a_shard_that_comes_last_ends_well),
 		cmocka_unit_test(a_killed_shard_costs_nothing),
+		cmocka_unit_test(a_build_that_sweeps_costs_a_slow_shard_nothing),
 		cmocka_unit_test(a_failure_is_told_where_a_master_is_there),
 	};
 
