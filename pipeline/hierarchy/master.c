@@ -13,6 +13,7 @@
 
 #include "base/array.h"
 #include "base/clock.h"
+#include "base/log.h"
 #include "pipeline/hierarchy/block_build.h"
 
 /* Raise BUILD_VERSION whenever the same scan would give other bytes. */
@@ -147,8 +148,9 @@ static int write_index(const char *folder, const struct master *head,
 	return rc;
 }
 
-/* Removes what earlier builds left, complete or not, but the index and what keep names. */
-static void remove_others(const char *folder, const char *keep)
+/* Removes what earlier builds left whose names begin with kind, complete or not, but the index and
+ * what keep names. */
+static void remove_others(const char *folder, const char *kind, const char *keep)
 {
 	DIR *entries = opendir(folder);
 	struct dirent *entry;
@@ -156,6 +158,7 @@ static void remove_others(const char *folder, const char *keep)
 
 	while (entries && (entry = readdir(entries))) {
 		if (entry->d_name[0] == '.' || strcmp(entry->d_name, "index") == 0 ||
+		    strncmp(entry->d_name, kind, strlen(kind)) != 0 ||
 		    path_in(path, folder, entry->d_name) < 0 || strcmp(path, keep) == 0)
 			continue;
 		bytes_remove_folder(path);
@@ -200,6 +203,23 @@ static int build_files(const char *folder, const char *groups, const char *block
 	return rc;
 }
 
+/* The same; if a file that an interrupted build left is damaged, once more from the beginning. */
+static int build_whole_files(const char *folder, const char *groups, const char *blocks,
+			     const struct mesh *mesh, struct hash stamp,
+			     const struct master_options *options, struct master_report *report)
+{
+	int rc = build_files(folder, groups, blocks, mesh, stamp, options, report);
+
+	if (rc != -EBADMSG)
+		return rc;
+	log_warn("pipeline", "%s: a file of an interrupted build is damaged; it begins anew",
+		 blocks);
+	bytes_remove_folder(blocks);
+	if (mkdir(blocks, 0777) < 0 && errno != EEXIST)
+		return -errno;
+	return build_files(folder, groups, blocks, mesh, stamp, options, report);
+}
+
 static bool is_complete(const char *folder, struct hash stamp)
 {
 	struct master *master;
@@ -224,14 +244,17 @@ int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 	if ((mkdir(folder, 0777) < 0 && errno != EEXIST) ||
 	    (mkdir(blocks, 0777) < 0 && errno != EEXIST))
 		return -errno;
-	rc = build_files(folder, groups, blocks, mesh, stamp, options, report);
+	/* Blocks of other scans or options may fill the disk. What they were for is not asked for
+	 * any more; a complete master stays until this one is. */
+	remove_others(folder, "blocks-", blocks);
+	rc = build_whole_files(folder, groups, blocks, mesh, stamp, options, report);
 	/* Files that vanish were removed by the machine that completed this master. */
 	if ((rc == -ENOENT || rc == -ESTALE) && is_complete(folder, stamp))
 		rc = 0;
 	/* What a killed build has done stays for the next one. Of several, the last to end removes
 	 * what it wrote while another was removing. */
 	if (rc == 0)
-		remove_others(folder, groups);
+		remove_others(folder, "", groups);
 	report->duration_ms = clock_now_ms() - start_ms;
 	return rc;
 }
@@ -241,7 +264,7 @@ void master_drop_leftovers(const char *folder, struct hash stamp)
 	char groups[PATH_MAX];
 
 	if (stamped_path(groups, folder, "groups", stamp) == 0)
-		remove_others(folder, groups);
+		remove_others(folder, "", groups);
 }
 
 /* ---- opening */

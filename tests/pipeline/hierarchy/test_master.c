@@ -337,18 +337,64 @@ static void a_shard_that_comes_last_ends_well(void **state)
 	check_against_one_machine(&home);
 }
 
-static void a_killed_shard_costs_nothing(void **state)
+/* Kills a shard once it has made a block. */
+static void leave_half_a_build(const struct home *home)
 {
-	struct home home;
-	pid_t killed;
+	pid_t killed = begin_shard(home->master, 0, 2);
 	int status;
+
+	wait_for_the_first_node(home);
+	CHECK(kill(killed, SIGKILL) == 0 && waitpid(killed, &status, 0) == killed);
+	CHECK(WIFSIGNALED(status) && access(home->index, F_OK) < 0);
+}
+
+static void a_damaged_file_of_half_a_build_is_made_again(void **state)
+{
+	char hex[HASH_HEX_BYTES], pattern[256];
+	struct home home;
+	glob_t found;
 
 	(void)state;
 	home_of_shards(&home);
-	killed = begin_shard(home.master, 0, 2);
-	wait_for_the_first_node(&home);
-	CHECK(kill(killed, SIGKILL) == 0 && waitpid(killed, &status, 0) == killed);
-	CHECK(WIFSIGNALED(status) && access(home.index, F_OK) < 0);
+	leave_half_a_build(&home);
+	hash_to_hex(home.stamp, hex);
+	snprintf(pattern, sizeof(pattern), "%s/blocks-%s/digest-*", home.master, hex);
+	CHECK(glob(pattern, 0, NULL, &found) == 0);
+	CHECK(truncate(found.gl_pathv[0], 5) == 0);
+	globfree(&found);
+	CHECK(end_shard(begin_shard(home.master, 0, 0)) == 0);
+	check_against_one_machine(&home);
+}
+
+static void half_a_build_of_other_options_leaves_its_room(void **state)
+{
+	struct mesh mesh = shape_temple(50);
+	struct master_report report;
+	char hex[HASH_HEX_BYTES], blocks[256];
+	struct home home;
+
+	(void)state;
+	home_of_shards(&home);
+	leave_half_a_build(&home);
+	hash_to_hex(home.stamp, hex);
+	snprintf(blocks, sizeof(blocks), "%s/blocks-%s", home.master, hex);
+	CHECK(access(blocks, F_OK) == 0);
+	mesh.triangles[5][1] = mesh.vertex_count; /* this one does not come to its end */
+	CHECK(master_build(home.master, &mesh, master_stamp((struct hash){ { 9 } }, &shared),
+			   &shared, &report) == -EINVAL);
+	CHECK(access(blocks, F_OK) < 0);
+	mesh_finish(&mesh);
+	master_drop_leftovers(home.master, home.stamp);
+	home_finish(&home);
+}
+
+static void a_killed_shard_costs_nothing(void **state)
+{
+	struct home home;
+
+	(void)state;
+	home_of_shards(&home);
+	leave_half_a_build(&home);
 	CHECK(end_shard(begin_shard(home.master, 1, 2)) == 0);
 	check_against_one_machine(&home);
 }
@@ -397,6 +443,8 @@ int main(void)
 		cmocka_unit_test(shards_at_once_make_the_same_bytes),
 		cmocka_unit_test(a_shard_that_comes_last_ends_well),
 		cmocka_unit_test(a_killed_shard_costs_nothing),
+		cmocka_unit_test(a_damaged_file_of_half_a_build_is_made_again),
+		cmocka_unit_test(half_a_build_of_other_options_leaves_its_room),
 		cmocka_unit_test(a_build_that_sweeps_costs_a_slow_shard_nothing),
 		cmocka_unit_test(a_failure_is_told_where_a_master_is_there),
 	};
