@@ -20,6 +20,7 @@ enum {
 	PATCHES = 256, /* a scan has at least so many, unless they get too small */
 	PATCH_TRIANGLES = 1000,
 	PATCH_TRIANGLES_MIN = 256,
+	FINEST_PATCHES_MAX = 1 << 19, /* all levels together have up to twice as many */
 	GROUP_PATCHES = 8,
 	REDUCTION = 4, /* factor by which triangles decrease per level */
 	TOP_TRIANGLES = 6000,
@@ -63,9 +64,13 @@ static uint32_t patch_triangles_for(uint64_t triangle_count)
 void multires_set_defaults(struct multires_options *options, uint64_t triangle_count)
 {
 	long processors = sysconf(_SC_NPROCESSORS_ONLN);
+	const uint32_t least = (uint32_t)(triangle_count / FINEST_PATCHES_MAX);
 
 	if (options->patch_triangles == 0)
 		options->patch_triangles = patch_triangles_for(triangle_count);
+	/* hierarchy_check would refuse more patches, after all the work. */
+	if (options->patch_triangles < least)
+		options->patch_triangles = least;
 	if (options->patch_triangles > PATCH_TRIANGLES_MAX)
 		options->patch_triangles = PATCH_TRIANGLES_MAX;
 	if (options->group_patches < 2 || options->group_patches > GROUP_PATCHES_MAX / 2)

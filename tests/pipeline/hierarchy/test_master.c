@@ -216,6 +216,32 @@ static void a_new_build_leaves_nothing_of_the_old(void **state)
 	home_finish(&home);
 }
 
+/* All levels have at most 2^20 patches (format/hierarchy.c), up to twice those of the finest. */
+static void the_largest_scans_have_no_more_patches_than_fit(void **state)
+{
+	static const uint64_t sizes[] = { 524288000, 700000000, 1500000000, 2097152000 };
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(sizes); i++)
+		for (uint32_t asked = 0; asked <= 256; asked += 256) {
+			struct multires_options some = { .patch_triangles = asked };
+
+			multires_set_defaults(&some, sizes[i]);
+			CHECK(some.patch_triangles <= PATCH_TRIANGLES_MAX);
+			CHECK(2 * sizes[i] / some.patch_triangles <= 1050000);
+		}
+}
+
+static void patches_of_other_scans_are_as_large_as_asked(void **state)
+{
+	struct multires_options none = { 0 }, few = { .patch_triangles = 256 };
+
+	(void)state;
+	multires_set_defaults(&none, 100000000);
+	multires_set_defaults(&few, 100000000);
+	CHECK(none.patch_triangles == 1000 && few.patch_triangles == 256);
+}
+
 /* ---- several at once (docs/cluster.md) */
 
 static const struct master_options shared = {
@@ -440,6 +466,8 @@ int main(void)
 		cmocka_unit_test(refuses_damaged_files),
 		cmocka_unit_test(publishes_no_more_than_the_share),
 		cmocka_unit_test(a_new_build_leaves_nothing_of_the_old),
+		cmocka_unit_test(the_largest_scans_have_no_more_patches_than_fit),
+		cmocka_unit_test(patches_of_other_scans_are_as_large_as_asked),
 		cmocka_unit_test(shards_at_once_make_the_same_bytes),
 		cmocka_unit_test(a_shard_that_comes_last_ends_well),
 		cmocka_unit_test(a_killed_shard_costs_nothing),
