@@ -54,8 +54,6 @@ static int take_cell(void *data, uint64_t index, int64_t vertex)
 static int take_triangle(void *data, uint64_t index, const struct ply_triangle *triangle)
 {
 	struct collector *collector = data;
-	const double *p[3];
-	double n[3];
 	int rc;
 
 	(void)index;
@@ -67,17 +65,6 @@ static int take_triangle(void *data, uint64_t index, const struct ply_triangle *
 		return rc;
 	memcpy(collector->triangles[collector->triangle_count++], triangle->corner,
 	       sizeof(collector->triangles[0]));
-	for (int k = 0; k < 3; k++)
-		p[k] = collector->points[triangle->corner[k]].at;
-	for (int k = 0; k < 3; k++) {
-		const int a = (k + 1) % 3, b = (k + 2) % 3;
-
-		n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) -
-		       (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
-	}
-	for (int k = 0; k < 3; k++)
-		for (int i = 0; i < 3 && isfinite(n[i]); i++)
-			collector->face_normals[triangle->corner[k]][i] += n[i];
 	return 0;
 }
 
@@ -180,6 +167,26 @@ static void drop_missing(struct collector *collector)
 	}
 }
 
+/* Adds the normal of a face to its corners, of a length that is twice its area. To be called when
+ * all is read, because faces may come before vertices. */
+static void add_face_normal(struct collector *collector, const uint32_t corners[3])
+{
+	const double *p[3];
+	double n[3];
+
+	for (int k = 0; k < 3; k++)
+		p[k] = collector->points[corners[k]].at;
+	for (int k = 0; k < 3; k++) {
+		const int a = (k + 1) % 3, b = (k + 2) % 3;
+
+		n[k] = (p[1][a] - p[0][a]) * (p[2][b] - p[0][b]) -
+		       (p[1][b] - p[0][b]) * (p[2][a] - p[0][a]);
+	}
+	for (int k = 0; k < 3; k++)
+		for (int i = 0; i < 3 && isfinite(n[i]); i++)
+			collector->face_normals[corners[k]][i] += n[i];
+}
+
 static int orient(struct collector *collector, enum range_sight sight, double *spacing)
 {
 	if (collector->grid.cells)
@@ -189,6 +196,8 @@ static int orient(struct collector *collector, enum range_sight sight, double *s
 	if (collector->grid.cells)
 		return range_grid_orient(spacing, &collector->grid, collector->points,
 					 (uint32_t)collector->summary->vertex_count);
+	for (uint32_t t = 0; t < collector->triangle_count; t++)
+		add_face_normal(collector, collector->triangles[t]);
 	for (uint64_t i = 0; i < collector->summary->vertex_count; i++) {
 		struct range_point *point = &collector->points[i];
 		double length = 0;

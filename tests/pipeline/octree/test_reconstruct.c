@@ -269,6 +269,26 @@ static void faces_of_a_mesh_give_points(void **state)
 	scan_remove(path);
 }
 
+static void faces_may_come_before_their_corners(void **state)
+{
+	static const char text[] = HEAD "element face 1\n"
+					"property list uchar int vertex_indices\n"
+					"element vertex 3\n" XYZ "end_header\n"
+					"3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n";
+	struct diagnostics diagnostics = { 0 };
+	struct range_scan scan;
+	char path[256];
+	(void)state;
+
+	scan_write(path, "one.ply", text, strlen(text));
+	CHECK(range_scan_read(&scan, path, NULL, RANGE_SIGHT_AUTO, &diagnostics) == 0);
+	CHECK(scan.count == 3 && scan.triangle_count == 1);
+	for (uint32_t i = 0; i < 3; i++)
+		CHECK(scan.points[i].normal[2] == 1 && scan.points[i].at[2] == 0);
+	range_scan_finish(&scan);
+	scan_remove(path);
+}
+
 static void registrations_place_the_scans(void **state)
 {
 	struct diagnostics diagnostics = { 0 };
@@ -298,6 +318,7 @@ int main(void)
 		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
+		cmocka_unit_test(faces_may_come_before_their_corners),
 		cmocka_unit_test(registrations_place_the_scans),
 	};
 
