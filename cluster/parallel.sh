@@ -8,5 +8,5 @@ set -eu
 dir=$(realpath "$1") release=$2 shards=$3
 shift 3
 content=${CONTENT:-gopura-content}
-parallel --retries 3 "$@" "$content" sample --jobs 1 --shard "{}/$shards" "$dir" ::: $(seq 0 $((shards - 1)))
+parallel --quote --retries 3 "$@" "$content" sample --jobs 1 --shard "{}/$shards" "$dir" ::: $(seq 0 $((shards - 1)))
 exec "$content" build "$dir" --out "$release"

@@ -9,6 +9,7 @@ command -v parallel >/dev/null || skip "GNU parallel is not installed"
 python3 -c 'import yaml' 2>/dev/null || skip "python3-yaml is not installed"
 content=$PWD/build/gopura-content
 folder=$PWD/build/e2e/cluster
+shared="$folder/the king's temple" # the starters below hand the name to a shell
 rm -rf "$folder"
 mkdir -p "$folder"
 export PARALLEL_HOME=$folder/parallel
@@ -27,7 +28,7 @@ kill_when() {
 
 tiny_content "$folder/alone" 60000 5000
 touch -d '2026-01-01' "$folder"/alone/*
-cp -rp "$folder/alone" "$folder/shared"
+cp -rp "$folder/alone" "$shared"
 cp -rp "$folder/alone" "$folder/geometry"
 "$content" build "$folder/alone" --out "$folder/release-alone" --keys "$folder/keys" >/dev/null
 cp -r "$folder/keys" "$folder/keys-shared"
@@ -43,19 +44,28 @@ diff -r "$folder/alone/.work/master" "$master" || fail "shards made another mast
 "$content" hierarchy "$folder/geometry" | grep -q 'nothing changed' || fail "the shards did not complete the master"
 
 # ---- the whole, as a person begins it; of the shards that ran before, one was killed and one finished
-"$content" sample --jobs 1 --shard 0/4 "$folder/shared" >"$folder/killed" 2>&1 &
-kill_when $! "$folder/shared/.work/master/index"
-"$content" sample --jobs 1 --shard 2/4 "$folder/shared" >"$folder/log" 2>&1 || { cat "$folder/log"; fail "shard 2"; }
+"$content" sample --jobs 1 --shard 0/4 "$shared" >"$folder/killed" 2>&1 &
+kill_when $! "$shared/.work/master/index"
+"$content" sample --jobs 1 --shard 2/4 "$shared" >"$folder/log" 2>&1 || { cat "$folder/log"; fail "shard 2"; }
 mv "$folder/keys-shared" "$folder/config-keys"
 XDG_CONFIG_HOME=$folder/config
 mkdir -p "$XDG_CONFIG_HOME/gopura/keys"
-mv "$folder/config-keys" "$XDG_CONFIG_HOME/gopura/keys/shared"
-CONTENT=$content cluster/parallel.sh "$folder/shared" "$folder/release-shared" 4 -j 3 >"$folder/log" 2>&1 ||
+mv "$folder/config-keys" "$XDG_CONFIG_HOME/gopura/keys/$(basename "$shared")"
+CONTENT=$content cluster/parallel.sh "$shared" "$folder/release-shared" 4 -j 3 >"$folder/log" 2>&1 ||
 	{ cat "$folder/log"; fail "cluster/parallel.sh"; }
 same_release "$folder/release-alone" "$folder/release-shared" || fail "shards made another release"
 
 # ---- what runs elsewhere is at least well-formed, and its numbers agree
-sh -n cluster/slurm.sh
+cat >"$folder/sbatch" <<'SH'
+#!/bin/sh
+for job; do :; done # the last argument
+SLURM_ARRAY_TASK_ID=3 sh -c "$job" >>"$(dirname "$0")/jobs" && echo 1
+SH
+printf '#!/bin/sh\nprintf "<%%s>" "$@"\n' >"$folder/told's"
+chmod +x "$folder/sbatch" "$folder/told's"
+PATH=$folder:$PATH CONTENT="$folder/told's" cluster/slurm.sh "$shared" "$folder/re'lease" 8 2 >/dev/null
+grep -qxF "<sample><--jobs><2><--shard><3/8><$shared><build><--jobs><2><$shared><--out><$folder/re'lease>" "$folder/jobs" ||
+	{ cat "$folder/jobs"; fail "the jobs of cluster/slurm.sh"; }
 python3 - <<'PY' || fail "cluster/job.yaml"
 import re, yaml
 job = yaml.safe_load(open("cluster/job.yaml"))["spec"]
