@@ -23,7 +23,8 @@
  *                    the fetcher keeps trying while it is wanted
  *   MESSAGE_META     a signed metadata file, bytes as received; the kiosk checks signatures itself
  *   MESSAGE_FILE     answers MESSAGE_ASK_FILE, once the source has answered
- *   MESSAGE_SYNCED   answers MESSAGE_SYNC: true if the data is safe, false if the disk failed
+ *   MESSAGE_SYNCED   answers MESSAGE_SYNC: true if the data is safe, false if the disk failed now
+ *                    or refused something since the last answer
  *   MESSAGE_STATUS   figures, once a second while they change, else twice a minute; also the sign
  *                    of life by which the kiosk detects that the fetcher hangs
  *

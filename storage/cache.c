@@ -94,6 +94,7 @@ int cache_create(struct cache **out, const struct cache_options *options)
 		cache->log_bytes = LOG_BYTES_MAX;
 	if (cache_ready(cache))
 		cache_shrink(cache);
+	cache->has_lost = false;
 	*out = cache;
 	return 0;
 }
@@ -215,6 +216,14 @@ static int put_with_room(struct cache *cache, sqlite3_stmt *put, int64_t pages)
 	return rc;
 }
 
+static bool ready_to_store(struct cache *cache)
+{
+	const bool ready = cache_ready(cache);
+
+	cache->has_lost = cache->has_lost || !ready;
+	return ready;
+}
+
 static int put_row(struct cache *cache, sqlite3_stmt *put, size_t bytes)
 {
 	int64_t pages = pages_of(bytes) + CACHE_EXTRA_PAGES;
@@ -229,7 +238,8 @@ static int put_row(struct cache *cache, sqlite3_stmt *put, size_t bytes)
 		rc = put_with_room(cache, put, pages);
 	if (rc < 0) {
 		cache->figures.refused_writes++;
-		return rc;
+		cache->has_lost = cache->has_lost || rc != -EDQUOT;
+		return rc == -EDQUOT ? -ENOSPC : rc;
 	}
 	return cache_count_pages(cache, pages);
 }
@@ -240,7 +250,7 @@ int cache_put(struct cache *cache, struct hash hash, struct bytes object, uint32
 	bool kept;
 	int rc;
 
-	if (!cache_ready(cache))
+	if (!ready_to_store(cache))
 		return -EIO;
 	kept = kept_for(cache, &hash) != 0 && may_keep_more(cache);
 	put = bound_to_hash(cache, STATEMENT_PUT, &hash);
@@ -348,7 +358,7 @@ int cache_put_file(struct cache *cache, struct hash name, struct bytes file)
 	sqlite3_stmt *put;
 	int rc;
 
-	if (!cache_ready(cache))
+	if (!ready_to_store(cache))
 		return -EIO;
 	put = bound_to_hash(cache, STATEMENT_PUT_FILE, &name);
 	sqlite3_bind_blob(put, 2, check.bytes, HASH_BYTES, SQLITE_STATIC);

@@ -67,7 +67,10 @@ must_check int cache_put_file(struct cache *cache, struct hash name, struct byte
 /* Commits the collected writes. On failure, what was put since the last commit is lost from the
  * cache. */
 must_check int cache_flush(struct cache *cache);
-/* As cache_flush, and waits for the disk, so that the contents of the cache survive a power cut. */
+/* As cache_flush, and waits for the disk, so that the contents of the cache survive a power cut.
+ * Returns -EIO, once, if the disk refused something since the last call that succeeded or said so:
+ * what was put then may be missing. What can never fit, or for lack of room beside what is kept,
+ * does not count. */
 must_check int cache_sync(struct cache *cache);
 /* Returns true if writes are waiting for a commit. */
 bool cache_needs_flush(const struct cache *cache);

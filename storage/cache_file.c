@@ -192,6 +192,7 @@ static void start_over(struct cache *cache)
 
 	cache_close(cache);
 	cache->faults = 0;
+	cache->has_lost = true;
 	cache->figures.set_aside++;
 	rc = db_set_aside(cache->path, BROKEN_BYTES_MAX);
 	log_warn("storage", "%s was damaged; renamed to %s.broken, and a new cache begins",
@@ -213,6 +214,7 @@ int cache_judge(struct cache *cache, int rc, const char *doing)
 	}
 	complain(cache, rc, doing);
 	if (cache->in_batch && sqlite3_get_autocommit(cache->db)) {
+		cache->has_lost = true;
 		cache->in_batch = false;
 		cache->batch_pages = 0;
 	}

@@ -45,6 +45,7 @@ struct cache {
 	uint64_t batch_pages; /* changed since BEGIN, overestimated */
 	int log_pages;        /* in the write-ahead log, as its hook reported */
 	int faults;           /* failed reads since the last success */
+	bool has_lost;        /* something that was to be stored is not; cache_sync has to say so */
 	struct cache_figures figures;
 };
 

@@ -70,6 +70,7 @@ int cache_begin(struct cache *cache)
 
 int cache_flush(struct cache *cache)
 {
+	const uint64_t set_aside = cache->figures.set_aside;
 	sqlite3_stmt *tick;
 	int rc;
 
@@ -82,15 +83,16 @@ int cache_flush(struct cache *cache)
 		rc = cache_judge(cache, db_run(cache->statements[STATEMENT_COMMIT]), "writing");
 	if (rc < 0) {
 		cache->figures.refused_writes++;
+		cache->has_lost = true;
 		roll_back(cache);
 		return rc;
 	}
 	cache->in_batch = false;
 	cache->batch_pages = 0;
 	/* The commit succeeded. If the log cannot be written back now, cache_begin notices it
-	 * again. */
+	 * again; but if that showed damage, a new cache has begun, and with it new statements. */
 	rc = checkpoint(cache);
-	return 0;
+	return cache->figures.set_aside > set_aside ? rc : 0;
 }
 
 int cache_sync(struct cache *cache)
@@ -101,7 +103,11 @@ int cache_sync(struct cache *cache)
 		return rc < 0 ? rc : -EIO;
 	/* A commit alone does not sync; writing the log back does, before and after. */
 	code = sqlite3_wal_checkpoint_v2(cache->db, NULL, SQLITE_CHECKPOINT_FULL, NULL, NULL);
-	return cache_judge(cache, db_code(code), "writing the log back");
+	rc = cache_judge(cache, db_code(code), "writing the log back");
+	if (rc < 0 || !cache->has_lost)
+		return rc;
+	cache->has_lost = false;
+	return -EIO;
 }
 
 bool cache_needs_flush(const struct cache *cache)
@@ -131,7 +137,7 @@ int cache_count_pages(struct cache *cache, int64_t pages)
 
 /* ---- eviction */
 
-/* Drops the least useful object. Returns -ENOSPC if everything that is left is kept. */
+/* Drops the least useful object. Returns -EDQUOT if everything that is left is kept. */
 static int evict_one(struct cache *cache)
 {
 	sqlite3_stmt *least = cache->statements[STATEMENT_MIN];
@@ -142,7 +148,7 @@ static int evict_one(struct cache *cache)
 
 	sqlite3_reset(least);
 	if (rc == 0 && code == SQLITE_DONE)
-		return -ENOSPC;
+		return -EDQUOT;
 	if (rc == 0) {
 		sqlite3_bind_int64(drop, 1, id);
 		rc = db_run(drop);
@@ -183,7 +189,7 @@ static int make_room_at_any_price(struct cache *cache)
 {
 	int rc = cache_make_room(cache, CACHE_EXTRA_PAGES);
 
-	if (rc != -ENOSPC || !cache->db)
+	if (rc != -EDQUOT || !cache->db)
 		return rc;
 	rc = cache_judge(cache, db_exec(cache->db, "UPDATE objects SET kept = 0 WHERE kept = 1"),
 			 "keeping less");

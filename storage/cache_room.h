@@ -9,7 +9,7 @@ must_check int cache_begin(struct cache *cache); /* begins a transaction if none
 must_check int cache_reserve_pages(struct cache *cache, int64_t pages);
 /* Counts changed pages, and ends a transaction that has become too long. */
 must_check int cache_count_pages(struct cache *cache, int64_t pages);
-/* Evicts until that many pages are free; a transaction is then open. Returns -ENOSPC if everything
+/* Evicts until that many pages are free; a transaction is then open. Returns -EDQUOT if everything
  * that is left is kept. */
 must_check int cache_make_room(struct cache *cache, int64_t pages);
 /* Returns how many pages may still be written within the budget. */

@@ -20,6 +20,9 @@ enum {
 	HELD_MS = 60000,       /* interval of checking the time of day */
 	WHOLE_MOST_MS = 20000, /* longest wait before the first picture is synced */
 	AGAIN_MS = 1000,       /* wait before a release is opened again that could not be */
+	/* Wait before a release is loaded a third time, because the disk refused some of it again:
+	 * each time may cost the line all of it. */
+	LOAD_AGAIN_MS = 3600000,
 };
 
 int sessions_init(struct sessions *sessions, const struct sessions_options *options)
@@ -251,7 +254,7 @@ static void take_over(struct sessions *sessions)
 	sessions->shown = sessions->coming;
 	sessions->shown.synced = true;
 	sessions->coming = (struct session){ 0 };
-	sessions->store_again_ms = 0;
+	sessions->store_again_ms = sessions->loaded_again_ms = 0;
 	announce(sessions, &before.exhibit);
 	for (uint32_t i = 0; i < sessions->shown.kept_count; i++)
 		net_client_keep(sessions->options.net, sessions->shown.kept[i]);
@@ -335,6 +338,20 @@ void sessions_keep_first(struct sessions *sessions, int64_t pictured_ms)
 	net_client_sync(sessions->options.net);
 }
 
+/* The disk takes now what it refused before, which is nowhere any more: the release is opened anew.
+ * What is stored comes from the fetcher's cache. */
+static void load_again(struct sessions *sessions)
+{
+	const struct exhibit coming = sessions->coming.exhibit;
+
+	if (sessions->loaded_again_ms > 0 &&
+	    clock_now_ms() < sessions->loaded_again_ms + LOAD_AGAIN_MS)
+		return; /* it is synced again, and this is asked again */
+	sessions->loaded_again_ms = clock_now_ms();
+	log_info("app", "the disk stores objects again; what the new release lacks is loaded");
+	sessions_begin(sessions, coming.root, coming.root_bytes);
+}
+
 /* Objects are synced first, then the state that names them: a power cut between the two loses
  * nothing. */
 void sessions_synced(struct sessions *sessions, bool done)
@@ -356,6 +373,11 @@ void sessions_synced(struct sessions *sessions, bool done)
 	if (!done) {
 		log_warn("app",
 			 "the new release could not be stored on the disk; the current one stays");
+		coming->lacks_objects = true;
+		return;
+	}
+	if (coming->lacks_objects) {
+		load_again(sessions);
 		return;
 	}
 	if (visitor_left_ms(sessions) > 0)

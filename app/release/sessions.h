@@ -16,9 +16,10 @@ enum { SESSION_KEPT_MAX = 4096 };
 struct session {
 	struct exhibit exhibit; /* scene NULL: there is none */
 	bool root_here;
-	bool syncing;     /* waiting for the fetcher to sync its objects to disk */
-	bool synced;      /* the sync after its first complete picture was requested */
-	bool remembering; /* state_writer is storing it; it is shown after that */
+	bool syncing;       /* waiting for the fetcher to sync its objects to disk */
+	bool synced;        /* the sync after its first complete picture was requested */
+	bool remembering;   /* state_writer is storing it; it is shown after that */
+	bool lacks_objects; /* the disk refused some; it is loaded again before it is shown */
 	bool was_settled; /* its first picture was complete; what arrives after it may be evicted */
 	struct hash kept[SESSION_KEPT_MAX]; /* objects that the fetcher is to keep in its cache */
 	uint32_t kept_count;
@@ -54,6 +55,7 @@ struct sessions {
 	int64_t again_ms;
 	/* When the release that is shown is stored again, because the disk failed; 0: it is not. */
 	int64_t store_again_ms;
+	int64_t loaded_again_ms; /* when the next one was, because the disk failed; 0: it was not */
 	struct gl_target warm_target; /* the target it is drawn to */
 	int epoll_fd;                 /* holds the descriptors of the scenes; 0: not created */
 };
@@ -79,7 +81,8 @@ void sessions_keep_first(struct sessions *sessions, int64_t pictured_ms);
 /* Called after each frame: tells the fetcher what is wanted. */
 void sessions_ask(struct sessions *sessions);
 /* Handles the answer to net_client_sync. done: the objects survive a power cut; otherwise the disk
- * failed, and it is tried again. */
+ * failed, and it is tried again, until the disk takes them; then what it refused is loaded again.
+ */
 void sessions_synced(struct sessions *sessions, bool done);
 /* Called when the release was stored, or could not be (rc < 0): then it is tried again. If it is
  * the next one and was stored, it is shown. */

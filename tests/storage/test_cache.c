@@ -590,6 +590,79 @@ static void tolerates_a_disk_that_stays_full(void **state)
 	cache_destroy(cache);
 }
 
+/* Who syncs goes on to say that what was put is safe. */
+static void a_sync_tells_once_of_what_the_disk_refused(void **state)
+{
+	struct cache *cache = open_cache(8 << 20);
+
+	(void)state;
+	CHECK(put(cache, 1, 20000, 0) == 0 && cache_sync(cache) == 0);
+	fault_set(FAULT_FULL, 0, 0);
+	CHECK(put(cache, 2, 20000, 0) == 0 && cache_flush(cache) == -ENOSPC);
+	fault_set(FAULT_NONE, 0, 0);
+	CHECK(put(cache, 3, 20000, 0) == 0 && cache_sync(cache) == -EIO);
+	CHECK(cache_sync(cache) == 0);
+	CHECK(get(cache, 2, 20000) == -ENOENT && get(cache, 3, 20000) == 0);
+	cache_destroy(cache);
+}
+
+/* It would never be stored, however often it is put. */
+static void a_sync_tells_nothing_of_what_has_no_room(void **state)
+{
+	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
+	uint32_t n = 0;
+	int rc = 0;
+
+	(void)state;
+	CHECK(put(cache, n, 1 << 20, 0) == -EFBIG);
+	while (rc == 0) { /* a byte more than half a page: a page for each */
+		const struct bytes bytes = object(++n, 2100);
+
+		rc = cache_keep(cache, hash_of(bytes));
+		if (rc == 0)
+			rc = cache_put(cache, hash_of(bytes), bytes, 0);
+	}
+	CHECK(rc == -ENOSPC && cache_sync(cache) == 0);
+	cache_destroy(cache);
+}
+
+static void a_sync_tells_of_what_came_before_the_file_could_be_opened(void **state)
+{
+	struct cache *cache;
+
+	(void)state;
+	fault_set(FAULT_IO, 0, 0);
+	cache = open_cache(8 << 20);
+	CHECK(put(cache, 1, 20000, 0) == -EIO);
+	fault_set(FAULT_NONE, 0, 0);
+	now_ms += 60000;
+	CHECK(put(cache, 2, 20000, 0) == 0 && cache_sync(cache) == -EIO);
+	CHECK(cache_sync(cache) == 0);
+	cache_destroy(cache);
+}
+
+/* The log is written back in the midst of a put: by then its statement is that of the cache before.
+ */
+static void a_log_that_does_not_fit_the_file_begins_a_new_cache(void **state)
+{
+	struct cache *cache = open_cache(8 << 20);
+
+	(void)state;
+	for (uint32_t n = 0; n < 200; n++)
+		CHECK(put(cache, n, 20000, 0) == 0);
+	CHECK(cache_sync(cache) == 0);
+	CHECK(truncate(path, 4096) == 0);
+	for (uint32_t n = 200; n < 300 && !exists(".broken"); n++) {
+		const int rc = put(cache, n, 20000, 0);
+
+		CHECK(rc == (exists(".broken") ? -EIO : 0));
+	}
+	CHECK(exists(".broken"));
+	CHECK(cache_sync(cache) == -EIO && cache_sync(cache) == 0);
+	CHECK(put(cache, 1, 20000, 0) == 0 && get(cache, 1, 20000) == 0);
+	cache_destroy(cache);
+}
+
 static void takes_no_more_than_its_share_of_the_disk(void **state)
 {
 	struct cache *cache;
@@ -657,6 +730,10 @@ int main(void)
 		IN_A_FOLDER(goes_on_after_any_write_failed),
 		IN_A_FOLDER(takes_no_failed_read_for_damage),
 		IN_A_FOLDER(tolerates_a_disk_that_stays_full),
+		IN_A_FOLDER(a_sync_tells_once_of_what_the_disk_refused),
+		IN_A_FOLDER(a_sync_tells_nothing_of_what_has_no_room),
+		IN_A_FOLDER(a_sync_tells_of_what_came_before_the_file_could_be_opened),
+		IN_A_FOLDER(a_log_that_does_not_fit_the_file_begins_a_new_cache),
 		IN_A_FOLDER(takes_no_more_than_its_share_of_the_disk),
 		IN_A_FOLDER(lives_without_a_file),
 	};

@@ -23,6 +23,7 @@ static struct {
 	int drawn;     /* pictures of the next release */
 	int remembers; /* requests to store a release */
 	struct hash remembered;
+	int opened; /* releases */
 	int syncs;
 	int visitor_left_ms;
 	int fds[4]; /* of the scenes */
@@ -67,6 +68,7 @@ int exhibit_open(struct exhibit *exhibit, struct hash root, uint32_t root_bytes,
 {
 	(void)scene;
 	(void)view;
+	museum.opened++;
 	*exhibit = (struct exhibit){ .scene = (struct scene *)&root_page,
 				     .root = root,
 				     .root_bytes = root_bytes };
@@ -427,6 +429,43 @@ static void tries_again_to_store_what_is_shown_where_the_disk_is_full(void **sta
 	CHECK(sessions_wait_ms(&sessions) == -1);
 }
 
+static void sync_next(bool done)
+{
+	const int before = museum.syncs;
+
+	after(sessions_wait_ms(&sessions));
+	CHECK(museum.syncs == before + 1);
+	sessions_synced(&sessions, done);
+}
+
+/* Of what the disk refused the fetcher has nothing, so a release that lacks it is not stored. */
+static void loads_the_next_again_where_the_disk_refused_some_of_it(void **state)
+{
+	(void)state;
+	show_first();
+	begin(second);
+	root_arrives(second);
+	sessions_synced(&sessions, false);
+	sync_next(false);
+	CHECK(museum.opened == 2);
+	sync_next(true);
+	CHECK(museum.opened == 3 && museum.remembers == 1);
+	root_arrives(second);
+	CHECK(museum.syncs == 5);
+	/* A disk that goes on refusing some costs the line no release each time. */
+	sessions_synced(&sessions, false);
+	sync_next(true);
+	CHECK(museum.opened == 3 && museum.remembers == 1);
+	now_ms += 60 * MINUTE;
+	sync_next(true);
+	CHECK(museum.opened == 4 && museum.remembers == 1);
+	root_arrives(second);
+	sessions_synced(&sessions, true);
+	CHECK(museum.remembers == 2 && hash_equal(museum.remembered, second));
+	sessions_remembered(&sessions, second, 0);
+	CHECK(hash_equal(sessions.shown.exhibit.root, second));
+}
+
 static void shows_what_there_is_of_the_next_after_a_minute(void **state)
 {
 	(void)state;
@@ -468,6 +507,7 @@ int main(void)
 		MUSEUM(waits_for_who_came_while_it_was_stored),
 		MUSEUM(tries_again_to_store_the_next_where_the_disk_is_full),
 		MUSEUM(tries_again_to_store_what_is_shown_where_the_disk_is_full),
+		MUSEUM(loads_the_next_again_where_the_disk_refused_some_of_it),
 		MUSEUM(shows_what_there_is_of_the_next_after_a_minute),
 		MUSEUM(gives_the_next_its_minute_from_when_it_may_load),
 	};
