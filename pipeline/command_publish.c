@@ -9,8 +9,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "pipeline/build.h"
 #include "pipeline/content/work_lock.h"
 #include "pipeline/release/publish_content.h"
+#include "pipeline/samples/sampler.h"
 
 static const char help[] =
 	"gopura-content publish: make a signed release from what is built, or undo a release\n"
@@ -32,9 +34,9 @@ static const char help[] =
 	"  --add-signature FOLDER\n"
 	"                   publish what --write-unsigned wrote, with the signatures that were put there\n"
 	"\n"
-	"Needs hierarchy and samples (`build` makes everything). Objects are written first and the\n"
-	"signed files last, so terminals see either the whole old release or the whole new one.\n"
-	"Nothing old is changed or removed.\n"
+	"Needs hierarchy and samples (`build` makes everything), and warns if the scans or temple.ini\n"
+	"have changed since. Objects are written first and the signed files last, so terminals see\n"
+	"either the whole old release or the whole new one. Nothing old is changed or removed.\n"
 	"\n"
 	"Examples:\n"
 	"  gopura-content publish temple --comment 'new pages of the east gate'\n"
@@ -47,6 +49,20 @@ struct settings {
 	const char *staged_folder; /* NULL: nothing was signed elsewhere */
 };
 
+/* Nothing is made anew here, and what does not belong together looks wrong on the terminals. */
+static void judge_age(struct scans *scans)
+{
+	struct master *master;
+
+	build_known_master(&master, scans);
+	if (!master || !sampler_is_current(scans, master))
+		fprintf(stderr,
+			"gopura-content publish: warning: the scans or temple.ini have changed since "
+			"hierarchy and samples were made: 'gopura-content build %s' makes them anew\n",
+			scans_content(scans)->folder);
+	master_destroy(master);
+}
+
 static int publish(struct publish_content_report *report, const struct settings *settings)
 {
 	if (settings->staged_folder)
@@ -56,6 +72,7 @@ static int publish(struct publish_content_report *report, const struct settings 
 		return publish_content_renew(report, &settings->publish);
 	if (settings->undo || settings->sequence)
 		return publish_content_again(report, &settings->publish, settings->sequence);
+	judge_age(sources_scans(settings->publish.sources));
 	return publish_content(report, &settings->publish);
 }
 

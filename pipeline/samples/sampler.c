@@ -552,12 +552,20 @@ static int look_at_points(struct sampler_progress *out, struct samples_store *st
 	return 0;
 }
 
+/* Opens the samples of a folder. Returns false, silently, if there are none or they are damaged. */
+static bool look_into(struct samples_store **store, const struct content *content)
+{
+	char path[CONTENT_PATH_BYTES + 32];
+
+	snprintf(path, sizeof(path), "%s/.work/samples/grid", content->folder);
+	return access(path, R_OK) == 0 && samples_store_look(store, content->folder) == 0;
+}
+
 int sampler_look(struct sampler_progress *out, struct scans *scans,
 		 const struct sampler_options *options, struct diagnostics *diagnostics)
 {
 	struct sampling sampling = { .content = scans_content(scans) };
 	const struct scans_shape *shape = scans_known_shape(scans);
-	char path[CONTENT_PATH_BYTES + 32];
 	struct samples_store *store;
 	int rc;
 
@@ -569,11 +577,44 @@ int sampler_look(struct sampler_progress *out, struct scans *scans,
 		return rc;
 	out->grid = sampling.grid;
 	out->point_count = sample_grid_points(&out->grid);
-	snprintf(path, sizeof(path), "%s/.work/samples/grid", sampling.content->folder);
-	if (access(path, R_OK) < 0 || samples_store_look(&store, sampling.content->folder) < 0)
+	if (!look_into(&store, sampling.content))
 		return 0; /* nothing was sampled, or it is done again */
 	if (hash_equal(samples_store_key(store), sampling.key))
 		rc = look_at_points(out, store);
 	samples_store_close(store);
 	return rc;
+}
+
+static bool has_first_view_of(const struct sample_grid *a, const struct sample_grid *b)
+{
+	return a->vantage_count == b->vantage_count &&
+	       memcmp(a->vantage_m, b->vantage_m, a->vantage_count * sizeof(a->vantage_m[0])) ==
+		       0 &&
+	       memcmp(a->background, b->background, sizeof(a->background)) == 0;
+}
+
+bool sampler_is_current(struct scans *scans, const struct master *master)
+{
+	enum { BELOW_GROUND = 1, WITH_BUDGET = 2, VARIANTS = 4 };
+	const struct scans_shape *shape = scans_known_shape(scans);
+	struct content content = *scans_content(scans);
+	struct samples_store *store;
+	bool found = false;
+
+	if (!shape || !look_into(&store, &content))
+		return false;
+	for (int variant = 0; variant < VARIANTS && !found; variant++) {
+		const struct sampler_options options = {
+			.master = shape->has_textures ? NULL : master,
+			.below_ground = variant & BELOW_GROUND,
+		};
+		struct sampling sampling = { .content = &content };
+
+		content.budget_bytes = variant & WITH_BUDGET;
+		found = prepare(&sampling, scans, shape, &options, NULL) == 0 &&
+			hash_equal(samples_store_key(store), sampling.key) &&
+			has_first_view_of(samples_store_grid(store), &sampling.grid);
+	}
+	samples_store_close(store);
+	return found;
 }

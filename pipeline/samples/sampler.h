@@ -38,6 +38,11 @@ void sampler_point(float out[3], const struct sample_grid *grid, const uint32_t 
 must_check int sampler_run(struct scans *scans, const struct sampler_options *options,
 			   struct diagnostics *diagnostics);
 
+/* Returns whether the samples that there are were made of these scans with these settings, whether
+ * for a budget or not, below the ground or not. Some may be missing. master: of the same scans.
+ * Reads no scan. */
+bool sampler_is_current(struct scans *scans, const struct master *master);
+
 /* What a run of the sampler would find. */
 struct sampler_progress {
 	struct sample_grid grid;

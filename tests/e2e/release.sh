@@ -113,7 +113,8 @@ hash=$(sed -nE 's/^  child +[0-9]+ +([0-9a-f]{32}) .*/\1/p' "$folder/log" | tail
 "$content" inspect "$release" "$hash" | grep -q 'in packs/' || fail "inspect: $hash"
 
 # ---- another region: labels and words alone are new
-"$content" publish "$dir" --out "$release" >/dev/null
+"$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log"
+! grep -q 'have changed since' "$folder/log" || fail "samples of today are called old"
 files >"$folder/before"
 echo 'here' >"$dir/regions/step.faces"
 "$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log" && fail "a list without faces was published"
@@ -128,6 +129,12 @@ echo '0-199' >"$dir/regions/step.faces"
 "$content" build "$dir" --out "$release" | grep -q '^release' || fail "a build did not see another list of faces"
 points | diff "$folder/points" - || fail "a title, a page or a region touched samples"
 "$content" verify "$server_url" --ca "$server_ca" >/dev/null || fail "another region, but not whole"
+
+# ---- another sun without other samples: published as asked for, but not without a word
+sed -i '/^colours/a sun = 1 0 1' "$dir/temple.ini"
+"$content" publish "$dir" --out "$release" >/dev/null 2>"$folder/log" || fail "another sun is not published"
+grep -q "have changed since hierarchy and samples were made: 'gopura-content build" "$folder/log" ||
+	fail "samples of another light were published without a word: $(cat "$folder/log")"
 
 # ---- a changed byte, at rest or in transit
 pack=$(ls -S "$release"/packs/* | head -n 1) # the tiles; a smaller one may be of an older release alone

@@ -419,6 +419,42 @@ static void makes_only_what_is_missing(void **state)
 	compare_files(dir[0], dir[1]);
 }
 
+static bool is_current(const char *lines)
+{
+	struct diagnostics diagnostics = { 0 };
+	struct content content;
+	struct scans *scans;
+	char path[256], ini[512];
+	bool current;
+
+	snprintf(path, sizeof(path), "%s/temple.ini", dir[0]);
+	snprintf(ini, sizeof(ini),
+		 "[model]\nscans = box.ply\n%s\n[grid]\npoints = 8\nface_px = 256\n"
+		 "quality = 95\n",
+		 lines);
+	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)ini, strlen(ini) }, path) == 0);
+	CHECK(content_read(&content, dir[0], &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	content.grid_points = 6;
+	current = sampler_is_current(scans, NULL);
+	scans_destroy(scans);
+	content_release(&content);
+	return current;
+}
+
+static void knows_samples_of_other_settings(void **state)
+{
+	(void)state;
+	CHECK(is_current("lit = no"));
+	CHECK(is_current("lit = no\nsun = 1 0 0\nname = x")); /* unlit */
+	CHECK(!is_current("lit = yes"));
+	CHECK(!is_current("lit = no\ncolours = marble"));
+	CHECK(!is_current("lit = no\nunit = cm"));
+	CHECK(!is_current("lit = no\nbackground = #102030")); /* behind the first view */
+	CHECK(!is_current("lit = no\n[view]\nstart = eye 9 9 9 target 0 0 0"));
+	CHECK(is_current("lit = no"));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -431,6 +467,7 @@ int main(void)
 		cmocka_unit_test(aprons_continue_into_the_neighbour),
 		cmocka_unit_test(shards_add_up_to_the_whole),
 		cmocka_unit_test(makes_only_what_is_missing),
+		cmocka_unit_test(knows_samples_of_other_settings),
 	};
 
 	return cmocka_run_group_tests(tests, make_dirs, remove_dirs);
