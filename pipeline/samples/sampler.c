@@ -341,8 +341,8 @@ static int start_children(const struct sampling *sampling, uint32_t jobs, pid_t 
 		prctl(PR_SET_PDEATHSIG, SIGTERM);
 		close(done[0]);
 		if (getppid() != parent)
-			_exit(1);
-		_exit(run_child(sampling, jobs, done[1]) < 0);
+			_exit(EIO);
+		_exit(-run_child(sampling, jobs, done[1]));
 	}
 	return 0;
 }
@@ -359,6 +359,21 @@ static void watch(int done_fd, uint32_t total)
 	progress_end(progress);
 }
 
+/* Waits for a child and returns what it failed of. SIGKILL is the kernel's, where memory is
+ * short. */
+static int end_child(pid_t child)
+{
+	int status = 0;
+
+	while (waitpid(child, &status, 0) < 0)
+		if (errno != EINTR)
+			return -errno;
+	if (WIFEXITED(status))
+		return -WEXITSTATUS(status);
+	log_error("pipeline", "a sampler process was killed by signal %d", WTERMSIG(status));
+	return WTERMSIG(status) == SIGKILL ? -ENOMEM : -EIO;
+}
+
 static int run_children(struct sampling *sampling, uint32_t jobs)
 {
 	pid_t children[JOBS_MAX] = { 0 };
@@ -372,14 +387,9 @@ static int run_children(struct sampling *sampling, uint32_t jobs)
 	watch(done[0], sampling->point_count);
 	close(done[0]);
 	for (uint32_t i = 0; i < jobs; i++) {
-		int status = 1;
+		int ended = children[i] > 0 ? end_child(children[i]) : 0;
 
-		if (children[i] <= 0)
-			continue;
-		while (waitpid(children[i], &status, 0) < 0 && errno == EINTR)
-			;
-		if (rc == 0 && status != 0)
-			rc = -EIO;
+		rc = rc < 0 ? rc : ended;
 	}
 	return rc;
 }
@@ -490,6 +500,19 @@ static int prepare(struct sampling *sampling, struct scans *scans, const struct 
 	return 0;
 }
 
+/* What to do after that failure. */
+static const char *cure_of(int rc)
+{
+	switch (rc) {
+	case -EBADMSG:
+		return "; .work/master is damaged: delete it and build again";
+	case -ENOMEM:
+		return "; run it with fewer --jobs";
+	default:
+		return "";
+	}
+}
+
 int sampler_run(struct scans *scans, const struct sampler_options *options,
 		struct diagnostics *diagnostics)
 {
@@ -504,8 +527,8 @@ int sampler_run(struct scans *scans, const struct sampler_options *options,
 		return rc;
 	rc = sample(&sampling, scans, options, diagnostics);
 	if (rc < 0)
-		diagnostics_add(diagnostics, rc, content->folder, 0, "sampling failed: %s",
-				strerror(-rc));
+		diagnostics_add(diagnostics, rc, content->folder, 0, "sampling failed: %s%s",
+				strerror(-rc), cure_of(rc));
 	return rc;
 }
 

@@ -1,9 +1,12 @@
 /* A box of six colours, sampled from all around, against rays cast by hand. */
 #include <dirent.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "format/tile.h"
 #include "pipeline/samples/sampler.h"
@@ -419,6 +422,30 @@ static void makes_only_what_is_missing(void **state)
 	compare_files(dir[0], dir[1]);
 }
 
+/* A child that fails is not told as an error of the disk, whatever it was. */
+static void tells_why_a_child_failed(void **state)
+{
+	const struct sampler_options options = { .jobs = 2 };
+	struct diagnostics diagnostics = { 0 };
+	struct content content;
+	struct scans *scans;
+	char path[256];
+
+	(void)state;
+	snprintf(path, sizeof(path), "%s/.work/samples/05-05-03", dir[0]);
+	CHECK(unlink(path) == 0 && mkdir(path, 0777) == 0);
+	CHECK(content_read(&content, dir[0], &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	content.grid_points = 6;
+	assert_int_equal(sampler_run(scans, &options, &diagnostics), -EISDIR);
+	CHECK(strstr(diagnostics.first.text, strerror(EISDIR)) != NULL);
+	CHECK(rmdir(path) == 0);
+	diagnostics = (struct diagnostics){ 0 };
+	CHECK(sampler_run(scans, &options, &diagnostics) == 0);
+	scans_destroy(scans);
+	content_release(&content);
+}
+
 static bool is_current(const char *lines)
 {
 	struct diagnostics diagnostics = { 0 };
@@ -467,6 +494,7 @@ int main(void)
 		cmocka_unit_test(aprons_continue_into_the_neighbour),
 		cmocka_unit_test(shards_add_up_to_the_whole),
 		cmocka_unit_test(makes_only_what_is_missing),
+		cmocka_unit_test(tells_why_a_child_failed),
 		cmocka_unit_test(knows_samples_of_other_settings),
 	};
 
