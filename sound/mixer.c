@@ -2,14 +2,47 @@
 #include "sound/mixer.h"
 
 #include <alsa/asoundlib.h>
+#include <string.h>
+#include <strings.h>
 
+#include "base/compiler.h"
 #include "base/log.h"
+
+static bool has_word(const char *name, const char *word)
+{
+	static const char between[] = " -_";
+
+	for (name += strspn(name, between); *name; name += strspn(name, between)) {
+		const size_t size = strcspn(name, between);
+
+		if (size == strlen(word) && strncasecmp(name, word, size) == 0)
+			return true;
+		name += size;
+	}
+	return false;
+}
+
+bool mixer_is_input(const char *name)
+{
+	static const char *const inputs[] = { "mic",    "dmic",  "microphone", "line",
+					      "linein", "aux",   "cd",         "capture",
+					      "adc",    "input", "loopback",   "sidetone",
+					      "beep" };
+
+	if (has_word(name, "out"))
+		return false; /* such as "Line Out" */
+	for (size_t i = 0; i < ARRAY_COUNT(inputs); i++)
+		if (has_word(name, inputs[i]))
+			return true;
+	return false;
+}
 
 static void open_control(snd_mixer_elem_t *control)
 {
 	long least, most;
 
-	if (!snd_mixer_selem_is_active(control))
+	if (!snd_mixer_selem_is_active(control) ||
+	    mixer_is_input(snd_mixer_selem_get_name(control)))
 		return;
 	if (snd_mixer_selem_has_playback_switch(control))
 		snd_mixer_selem_set_playback_switch_all(control, 1);
