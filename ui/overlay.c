@@ -393,26 +393,25 @@ void overlay_show_search(struct overlay *overlay, bool on)
 	if (on == overlay->search.fade.on || (on && overlay->parts.count == 0))
 		return;
 	if (on) {
-		overlay->search.query[0] = 0;
-		overlay_search_again(overlay);
+		overlay_search_again(overlay, "");
 		return;
 	}
 	search_view_close(&overlay->search);
 	overlay->callouts.dirty = true;
 }
 
-void overlay_search_again(struct overlay *overlay)
+void overlay_search_again(struct overlay *overlay, const char *query)
 {
 	struct screen screen;
 
-	if (overlay->search.fade.on || overlay->parts.count == 0)
+	if (overlay->parts.count == 0)
 		return;
 	overlay_close_page(overlay);
 	overlay_show_card(overlay, -1);
 	overlay_show_help(overlay, false);
 	overlay_show_tours(overlay, false);
 	screen = overlay_screen(overlay);
-	search_view_open(&overlay->search, &screen);
+	search_view_open(&overlay->search, &screen, query);
 	overlay->callouts.dirty = true;
 }
 

@@ -112,9 +112,9 @@ int overlay_picture(
 /* The search, in the page's place: a field, the parts that were found, a keyboard. It opens with an
  * empty field and lists all parts; it closes card and page. Without parts it does not open. */
 void overlay_show_search(struct overlay *overlay, bool on);
-/* Opens the search with the last query. The caller must then call overlay_found, as after
- * overlay_press. */
-void overlay_search_again(struct overlay *overlay);
+/* Opens the search with a query that was typed before; copied. The caller must then call
+ * overlay_found, as after overlay_press. */
+void overlay_search_again(struct overlay *overlay, const char *query);
 /* Returns true if the search is open. */
 bool overlay_searching(const struct overlay *overlay);
 /* Returns the query; borrowed until the next overlay_press. */

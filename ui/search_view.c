@@ -2,6 +2,7 @@
 #include "ui/search_view.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -199,8 +200,9 @@ void search_view_picture_arrived(struct search_view *view, const struct parts *p
 	}
 }
 
-void search_view_open(struct search_view *view, const struct screen *screen)
+void search_view_open(struct search_view *view, const struct screen *screen, const char *query)
 {
+	snprintf(view->query, sizeof(view->query), "%s", query);
 	view->fade.on = true;
 	view->head_dirty = true;
 	for (uint32_t i = 0; i < SEARCH_ROWS; i++) {

@@ -50,8 +50,8 @@ void search_view_redraw(struct search_view *view, const struct screen *screen);
 void search_view_picture_arrived(struct search_view *view, const struct parts *parts,
 				 const char *name);
 
-/* Opens it with the last query, and lists all parts. */
-void search_view_open(struct search_view *view, const struct screen *screen);
+/* Opens it with a query, and lists all parts. */
+void search_view_open(struct search_view *view, const struct screen *screen, const char *query);
 void search_view_close(struct search_view *view);
 /* Presses the key of an OVERLAY_KEY action. Returns true if the query changed. If it is empty then,
  * all parts are listed. */

@@ -2,6 +2,8 @@
  */
 #include "app/visit/back.h"
 
+#include <stdio.h>
+
 #include "base/log.h"
 
 #define NEAR_SHARE 0.01f /* of the model's diagonal; an eye that moved less has not moved */
@@ -21,6 +23,8 @@ static struct place place_of(const struct back *back)
 			      .searching = overlay_searching(overlay),
 			      .on_tour = tour_player_has_visitor(back->env.tours) };
 
+	if (here.searching)
+		snprintf(here.query, sizeof(here.query), "%s", overlay_query(overlay));
 	navigator_goal(&back->env.eye->navigator, here.eye_m, here.target_m);
 	return here;
 }
@@ -57,7 +61,7 @@ static void go_to(struct back *back, const struct place *place)
 		overlay_read_from(overlay, place->read);
 	}
 	if (place->searching) {
-		overlay_search_again(overlay);
+		overlay_search_again(overlay, place->query);
 		information_view_search(back->env.shown->view);
 	} else {
 		overlay_show_search(overlay, false);

@@ -13,7 +13,7 @@ static bool is_same(const struct place *a, const struct place *b, float near_m)
 	float from[3], to[3];
 
 	if (a->card != b->card || a->page != b->page || a->searching != b->searching ||
-	    a->on_tour != b->on_tour)
+	    strcmp(a->query, b->query) != 0 || a->on_tour != b->on_tour)
 		return false;
 	if (a->on_tour)
 		return true; /* both are on a tour, which moves the eye */

@@ -6,7 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { WAY_BACK_MAX = 32 }; /* most steps that are kept */
+enum {
+	WAY_BACK_MAX = 32, /* most steps that are kept */
+	WAY_BACK_QUERY_BYTES = 128,
+};
 
 struct place {
 	float eye_m[3], target_m[3];
@@ -14,7 +17,8 @@ struct place {
 	float read;     /* scroll position: share of the page above the visible part */
 	bool wide;      /* the page covers the whole panel */
 	bool searching;
-	bool on_tour; /* on a visitor's tour, running or halted */
+	char query[WAY_BACK_QUERY_BYTES]; /* what is typed, while searching; else "" */
+	bool on_tour;                     /* on a visitor's tour, running or halted */
 };
 
 struct way_back {

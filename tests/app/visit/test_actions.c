@@ -121,6 +121,28 @@ static void the_search_is_a_step_only_when_it_opens(void **state)
 	CHECK(!overlay_searching(words()) && overlay_card(words()) == 1 && eye_flies());
 }
 
+/* Of two searches, each was left with a letter of its own. */
+static void the_way_back_leads_to_what_was_typed_then(void **state)
+{
+	char typed[2][8];
+
+	(void)state;
+	for (int search = 0; search < 2; search++) {
+		tap(OVERLAY_SEARCH);
+		actions_press_key(&visit.actions, search);
+		snprintf(typed[search], sizeof(typed[search]), "%s", overlay_query(words()));
+		act((struct overlay_action){ .kind = OVERLAY_FOUND, .part = search });
+		land();
+	}
+	CHECK(strcmp(typed[0], typed[1]) != 0);
+	tap(OVERLAY_BACK);
+	CHECK(overlay_searching(words()) && strcmp(overlay_query(words()), typed[1]) == 0);
+	tap(OVERLAY_BACK);
+	CHECK(!overlay_searching(words()) && overlay_card(words()) == 0);
+	tap(OVERLAY_BACK);
+	CHECK(overlay_searching(words()) && strcmp(overlay_query(words()), typed[0]) == 0);
+}
+
 static void a_language_is_set_and_counted(void **state)
 {
 	(void)state;
@@ -181,6 +203,7 @@ int main(void)
 		VISITED(to_read_halts_a_tour_and_to_go_home_ends_it),
 		VISITED(the_tour_button_halts_and_goes_on),
 		VISITED(the_search_is_a_step_only_when_it_opens),
+		VISITED(the_way_back_leads_to_what_was_typed_then),
 		VISITED(a_language_is_set_and_counted),
 		VISITED(a_tool_is_switched_on_and_off),
 		VISITED(comfort_and_help_are_switched),
