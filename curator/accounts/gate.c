@@ -12,6 +12,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/transient.h"
 #include "curator/accounts/accounts.h"
 #include "curator/accounts/attempts.h"
 
@@ -52,8 +53,9 @@ static void refresh(struct gate *gate)
 	    now.st_mtim.tv_sec == gate->seen.st_mtim.tv_sec &&
 	    now.st_mtim.tv_nsec == gate->seen.st_mtim.tv_nsec)
 		return;
-	gate->seen = now;
 	rc = accounts_read(&fresh, gate->folder, &diagnostics);
+	if (!is_transient(rc)) /* otherwise it is read again at the next look */
+		gate->seen = now;
 	if (rc < 0) {
 		log_error("curator", "%s", diagnostics_cause(&diagnostics, rc));
 		return;

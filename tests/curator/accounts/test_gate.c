@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "base/clock.h"
 #include "curator/accounts/accounts.h"
@@ -110,6 +111,22 @@ static void a_changed_role_holds_at_once(void **state)
 	CHECK(gate_role(gate, "eve") == ROLE_NONE);
 }
 
+static void a_change_that_could_not_be_read_is_read_later(void **state)
+{
+	char key[SIGN_IN_SECRET_BYTES];
+	struct rlimit before, none;
+
+	(void)state;
+	admit(key);
+	write_account("ana", ROLE_READER, NULL);
+	CHECK(getrlimit(RLIMIT_NOFILE, &before) == 0);
+	none = (struct rlimit){ 0, before.rlim_max };
+	CHECK(setrlimit(RLIMIT_NOFILE, &none) == 0);
+	CHECK(role_of(key) == ROLE_EDITOR);
+	CHECK(setrlimit(RLIMIT_NOFILE, &before) == 0);
+	CHECK(role_of(key) == ROLE_READER);
+}
+
 static void a_changed_password_ends_what_the_old_one_began(void **state)
 {
 	char key[SIGN_IN_SECRET_BYTES];
@@ -176,6 +193,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_key_is_its_accounts_until_it_signs_out, start,
 						stop),
 		cmocka_unit_test_setup_teardown(a_changed_role_holds_at_once, start, stop),
+		cmocka_unit_test_setup_teardown(a_change_that_could_not_be_read_is_read_later,
+						start, stop),
 		cmocka_unit_test_setup_teardown(a_changed_password_ends_what_the_old_one_began,
 						start, stop),
 		cmocka_unit_test_setup_teardown(looking_keeps_nobody_signed_in_and_messages_do,
