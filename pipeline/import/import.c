@@ -23,6 +23,8 @@
 #include "pipeline/import/import_vrml.h"
 #include "pipeline/import/mesh_colour.h"
 
+enum { GLB_JSON_AT = 20 /* behind its head and that of the chunk */ };
+
 static const uint8_t sandstone[3] = { 186, 166, 136 };
 
 /* ---- detecting the format */
@@ -347,16 +349,30 @@ bool import_unit_named(const char *name, double *out_metres)
 	return true;
 }
 
-enum { GLTF_LOOK_BYTES = 64 << 20 }; /* the JSON of a GLB comes first and is far smaller */
+/* Returns how many bytes hold the JSON: all of a glTF, and the first chunk of a GLB. */
+static uint64_t gltf_look_bytes(int fd, uint64_t file_bytes)
+{
+	uint8_t head[16] = { 0 };
+	struct reader reader;
+	uint64_t bytes;
+
+	if (bytes_read_at(fd, head, sizeof(head), 0) < 0 || memcmp(head, "glTF", 4) != 0)
+		return file_bytes;
+	reader_init(&reader, (struct bytes){ head + 12, 4 });
+	bytes = GLB_JSON_AT + (uint64_t)reader_u32(&reader);
+	return bytes < file_bytes ? bytes : file_bytes;
+}
 
 /* Refuses a glTF file that cannot be read right, before anything is read of it. */
 static int check_gltf(const char *path, uint64_t file_bytes, struct diagnostics *diagnostics)
 {
-	size_t size = file_bytes < GLTF_LOOK_BYTES ? (size_t)file_bytes : GLTF_LOOK_BYTES;
-	uint8_t *text = malloc(size + 1);
 	int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-	int rc = fd < 0 ? -errno : text ? bytes_read_at(fd, text, size, 0) : -ENOMEM;
+	int rc = fd < 0 ? -errno : 0;
+	const size_t size = rc == 0 ? gltf_look_bytes(fd, file_bytes) : 0;
+	uint8_t *text = malloc(size + 1);
 
+	if (rc == 0)
+		rc = text ? bytes_read_at(fd, text, size, 0) : -ENOMEM;
 	if (fd >= 0)
 		close(fd);
 	if (rc < 0)

@@ -41,6 +41,9 @@ static inline const char *import_lack(int rc)
 	if (rc == -ENOSPC)
 		return "the disk has no room for the imported mesh; make some, or set TMPDIR to a "
 		       "larger disk";
+	if (rc == -ENOENT || rc == -ENOTDIR || rc == -EACCES || rc == -EROFS)
+		return "no temporary file can be made in TMPDIR, or without it in /var/tmp; set "
+		       "TMPDIR to a folder on a disk that may be written to";
 	return strerror(-rc);
 }
 

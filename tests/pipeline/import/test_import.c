@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <math.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "base/bytes.h"
 #include "format/picture.h"
@@ -640,6 +641,52 @@ static void refuses_what_is_no_surface(void **state)
 	CHECK(import_scan(&mesh, "/tmp", &options, NULL, &diagnostics) == -EINVAL);
 }
 
+/* A scan that names what its reader would read wrong behind 64 MB of something else. */
+static void looks_at_all_of_a_gltf(void **state)
+{
+	static const char head[] = "{\"asset\":{\"version\":\"2.0\",\"copyright\":\"",
+			  tail[] = "\"},\"extensionsRequired\":[\"KHR_mesh_quantization\"]}";
+	const size_t middle = 65 << 20, size = sizeof(head) - 1 + middle + sizeof(tail) - 1;
+	char *text = malloc(size), path[256];
+	struct diagnostics diagnostics = { 0 };
+	(void)state;
+
+	CHECK(text != NULL);
+	memcpy(text, head, sizeof(head) - 1);
+	memset(text + sizeof(head) - 1, 'a', middle);
+	memcpy(text + size - (sizeof(tail) - 1), tail, sizeof(tail) - 1);
+	scan_write(path, "long.gltf", text, size);
+	free(text);
+	CHECK(import_check(path, &diagnostics) == -ENOTSUP);
+	CHECK(strstr(diagnostics.first.text, "cli dequantize"));
+	scan_remove(path);
+}
+
+/* Its arrays need files, and the cure is no other scan. */
+static void names_the_folder_where_no_temporary_file_can_be_made(void **state)
+{
+	static const char ply[] =
+		"ply\nformat binary_little_endian 1.0\nelement vertex 3000000\nproperty float x\n"
+		"property float y\nproperty float z\nelement face 1\n"
+		"property list uchar int vertex_indices\nend_header\n";
+	const char *was = getenv("TMPDIR");
+	char *before = was ? strdup(was) : NULL, path[256];
+	const struct import_options options = { 0 };
+	struct diagnostics diagnostics = { 0 };
+	struct mesh mesh;
+	(void)state;
+
+	scan_write(path, "large.ply", ply, strlen(ply));
+	CHECK(truncate(path, (off_t)strlen(ply) + 3000000 * 12 + 13) == 0);
+	CHECK(setenv("TMPDIR", "/nowhere/at/all", 1) == 0);
+	CHECK(import_scan(&mesh, path, &options, NULL, &diagnostics) == -ENOENT);
+	if (!strstr(diagnostics.first.text, "large.ply: no temporary file can be made in TMPDIR"))
+		fail_msg("%s", diagnostics.first.text);
+	CHECK(before ? setenv("TMPDIR", before, 1) == 0 : unsetenv("TMPDIR") == 0);
+	free(before);
+	scan_remove(path);
+}
+
 /* ---- several threads */
 
 enum { SIDE = 400 }; /* several ranges of vertices and faces */
@@ -767,6 +814,8 @@ int main(void)
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),
 		cmocka_unit_test(refuses_what_is_no_surface),
+		cmocka_unit_test(looks_at_all_of_a_gltf),
+		cmocka_unit_test(names_the_folder_where_no_temporary_file_can_be_made),
 		cmocka_unit_test(any_number_of_threads_makes_the_same_mesh),
 		cmocka_unit_test(names_of_axes_and_units),
 	};
