@@ -299,15 +299,26 @@ static int import_and_save(struct scans *scans, const char *path, struct diagnos
 			diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
 					strerror(-rc));
 	}
-	if (rc == 0 && save_reports(scans, reports) < 0)
-		log_warn("pipeline",
-			 "%s/.work/imported cannot be written: the report will lack "
-			 "the counts of the import",
-			 scans->content->folder);
+	if (rc == 0) {
+		rc = save_reports(scans, reports);
+		if (rc < 0)
+			diagnostics_add(diagnostics, rc, scans->content->folder, 0,
+					".work/imported: %s; is the disk full?", strerror(-rc));
+	}
 	free(reports);
 	if (rc < 0)
 		mesh_finish(&scans->mesh);
 	return rc;
+}
+
+/* A mesh without the reports is half an import: whether a scan had pictures is told there alone. */
+static bool has_reports(struct scans *scans)
+{
+	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
+	const bool has = reports && scans_get_reports(scans, reports) >= 0;
+
+	free(reports);
+	return has;
 }
 
 static int load_mesh(struct scans *scans, struct diagnostics *diagnostics)
@@ -322,7 +333,7 @@ static int load_mesh(struct scans *scans, struct diagnostics *diagnostics)
 	if (rc < 0)
 		return diagnostics_add(diagnostics, rc, NULL, 0, "%s/.work: %s",
 				       scans->content->folder, strerror(-rc));
-	if (mesh_file_load(&scans->mesh, key, path) < 0)
+	if (!has_reports(scans) || mesh_file_load(&scans->mesh, key, path) < 0)
 		rc = import_and_save(scans, path, diagnostics);
 	scans->has_mesh = rc == 0;
 	return rc;
@@ -411,7 +422,7 @@ static int find_pictures(struct scans *scans, bool *found)
 	for (int i = 0; i < count; i++)
 		*found |= reports[i].textures > 0;
 	free(reports);
-	return count < 0 && count != -ENOENT ? count : 0;
+	return count < 0 ? count : 0;
 }
 
 /* Takes the shape of the mesh in memory and saves it. */

@@ -97,10 +97,44 @@ static void a_picture_of_a_page_makes_no_scan_anew(void **state)
 	CHECK(memcmp(&before, &after, sizeof(before)) == 0);
 }
 
+/* Half an import, as a full disk or a power cut leaves it, is none. */
+static void pictures_are_known_even_if_the_reports_were_lost(void **state)
+{
+	static const char ini[] = "[model]\nscans = scan.obj\n[hierarchy]\nsurface = octree\n"
+				  "cell_mm = 60\n";
+	static const char *const lost[] = { "imported", "shape" };
+	const struct scans_shape *shape;
+	struct diagnostics diagnostics = { 0 };
+	struct content content;
+	struct scans *scans;
+	char folder[256], path[300];
+	(void)state;
+
+	scan_write_beside(ini_path, "temple.ini", ini, strlen(ini));
+	write_picture("textures/skin.png", 2);
+	snprintf(folder, sizeof(folder), "%.*s", (int)(strrchr(ini_path, '/') - ini_path),
+		 ini_path);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	for (int i = 0; i < 2; i++) {
+		CHECK(scans_create(&scans, &content) == 0);
+		if (scans_get_shape(scans, &shape, &diagnostics) < 0)
+			fail_msg("%s", diagnostics.first.text);
+		CHECK(!shape->has_textures && shape->had_pictures);
+		scans_destroy(scans);
+		for (size_t k = 0; k < ARRAY_COUNT(lost); k++) {
+			snprintf(path, sizeof(path), "%s/.work/%s", folder, lost[k]);
+			CHECK(unlink(path) == 0);
+		}
+	}
+	content_release(&content);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_picture_below_is_seen_when_it_comes_or_changes,
+						make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(pictures_are_known_even_if_the_reports_were_lost,
 						make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(a_picture_of_a_page_makes_no_scan_anew, make_folder,
 						remove_folder),
