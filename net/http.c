@@ -46,6 +46,7 @@ struct http {
 	char *ca_file, *redirect_hosts;
 	long stall_s, patience_s;
 	bool is_local;
+	bool is_stalled;          /* the last request was not answered in time */
 	int sockets[SOCKETS_MAX]; /* open sockets, to count the bytes they received */
 	size_t socket_count;
 	/* received by sockets that were closed, and read from a local folder */
@@ -90,8 +91,8 @@ static curl_socket_t on_open(void *data, curlsocktype purpose, struct curl_socka
 	int fd = socket(address->family, address->socktype | SOCK_CLOEXEC, address->protocol);
 
 	(void)purpose;
-	/* libcurl goes on using an HTTP/2 connection on which a request stalled; without this the
-	 * kernel takes a quarter of an hour to find out that nobody is at the other end. */
+	/* Without this the kernel takes a quarter of an hour to find out that nobody is at the
+	 * other end. */
 	if (fd >= 0 && setsockopt(fd, IPPROTO_TCP, TCP_USER_TIMEOUT, &dead_ms, sizeof(dead_ms)) < 0)
 		log_debug("net", "a dead connection will not be noticed");
 	if (fd >= 0 && http->socket_count < SOCKETS_MAX)
@@ -402,6 +403,7 @@ static void finish_request(CURL *easy, CURLcode code)
 	if (follow(request, code))
 		return;
 	result.rc = judge_code(request, code);
+	request->http->is_stalled = code == CURLE_OPERATION_TIMEDOUT && result.rc < 0;
 	result.not_modified = result.rc == 0 && request->status == 304;
 	result.etag = request->etag;
 	result.why = why;
@@ -491,6 +493,9 @@ static void set_options(struct http_request *request)
 	curl_easy_setopt(easy, CURLOPT_HTTP_VERSION, (long)CURL_HTTP_VERSION_2TLS);
 	/* prefer sharing a connection to opening a new one */
 	curl_easy_setopt(easy, CURLOPT_PIPEWAIT, 1L);
+	/* But libcurl goes on using an HTTP/2 connection on which a request stalled. If a process
+	 * of the server hangs, its kernel acknowledges for ever: this request closes it. */
+	curl_easy_setopt(easy, CURLOPT_FORBID_REUSE, (long)http->is_stalled);
 	curl_easy_setopt(easy, CURLOPT_CONNECTTIMEOUT_MS, (long)CONNECT_MS);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_LIMIT, (long)STALL_BYTES_PER_S);
 	curl_easy_setopt(easy, CURLOPT_LOW_SPEED_TIME, http->stall_s);
