@@ -89,6 +89,10 @@ static int make(struct settings *settings, struct scans *scans)
 		return rc;
 	}
 	settings->options.lit = content_is_lit(content, shape->had_pictures);
+	settings->options.look = (struct reduced_look){
+		.is_stone = content->colours == CONTENT_COLOURS_PROCEDURAL,
+		.substance = content->substance,
+	};
 	buffer_init(&file, TEXMESH_BUDGET_MOST_BYTES);
 	rc = texmesh_make(&file, mesh, &settings->options, &report);
 	scans_drop_mesh(scans);

@@ -10,6 +10,7 @@
 
 #include "base/spill.h"
 #include "geometry/vec.h"
+#include "pipeline/material/material.h"
 
 /* Relative to the model's size: the number of triangles decides alone. */
 static const float error_most = 1e9f;
@@ -114,9 +115,10 @@ static bool has_colours(const struct mesh *mesh)
 	return false;
 }
 
-static int copy_plain(struct reduced_mesh *out, const struct mesh *mesh)
+/* keeps_colours: vertices have colours of their own in out. */
+static int copy_plain(struct reduced_mesh *out, const struct mesh *mesh, bool keeps_colours)
 {
-	const struct reduced_mesh like = { .colours = has_colours(mesh) ? mesh->colours : NULL,
+	const struct reduced_mesh like = { .colours = keeps_colours ? mesh->colours : NULL,
 					   .colour = { 255, 255, 255 },
 					   .material_count = 1 };
 	int rc = allocate(out, &like, mesh->vertex_count, mesh->triangle_count);
@@ -134,6 +136,40 @@ static int copy_plain(struct reduced_mesh *out, const struct mesh *mesh)
 		spill_pass(i);
 	}
 	return rc;
+}
+
+/* The mean length of the edges. */
+static float spacing_of(const struct reduced_mesh *mesh)
+{
+	double sum = 0;
+
+	for (uint32_t i = 0; i < mesh->triangle_count; i++) {
+		const uint32_t *t = mesh->triangles[i];
+
+		for (int k = 0; k < 3; k++)
+			sum += (double)vec_distance(mesh->positions[t[k]],
+						    mesh->positions[t[(k + 1) % 3]]);
+	}
+	return (float)(sum / (3.0 * mesh->triangle_count));
+}
+
+/* Gives vertices the colours of a substance, without the detail that is finer than they are. The
+ * share of open sky stays. */
+static void paint(struct reduced_mesh *mesh, enum substance_kind substance)
+{
+	const float spacing_m = spacing_of(mesh);
+
+	for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+		float rgb[3];
+
+		if (substance == SUBSTANCE_NONE)
+			material_colour(rgb, mesh->positions[i], mesh->normals[i], spacing_m);
+		else
+			substance_colour(rgb, substance, mesh->positions[i], spacing_m);
+		for (int k = 0; k < 3; k++)
+			mesh->colours[i][k] =
+				(uint8_t)(255 * vec_least(vec_most(rgb[k], 0), 1) + 0.5f);
+	}
 }
 
 /* Normals are the same on both sides of a seam: they are summed by place. */
@@ -169,17 +205,20 @@ static int find_normals(struct reduced_mesh *mesh)
 	return rc;
 }
 
-int reduced_mesh_copy(struct reduced_mesh *out, const struct mesh *mesh)
+int reduced_mesh_copy(struct reduced_mesh *out, const struct mesh *mesh, struct reduced_look look)
 {
+	const bool has_textures = mesh->uvs && mesh->texture_count > 0 && !look.is_stone;
 	int rc;
 
 	*out = (struct reduced_mesh){ 0 };
 	if (3 * (uint64_t)mesh->triangle_count > INT_MAX)
 		return -EFBIG;
-	rc = mesh->uvs && mesh->texture_count > 0 ? copy_textured(out, mesh)
-						  : copy_plain(out, mesh);
+	rc = has_textures ? copy_textured(out, mesh)
+			  : copy_plain(out, mesh, look.is_stone || has_colours(mesh));
 	if (rc == 0)
 		rc = find_normals(out);
+	if (rc == 0 && look.is_stone)
+		paint(out, look.substance);
 	if (rc < 0)
 		reduced_mesh_finish(out);
 	return rc;

@@ -5,6 +5,9 @@
 #ifndef GOPURA_PIPELINE_TEXMESH_REDUCED_MESH_H
 #define GOPURA_PIPELINE_TEXMESH_REDUCED_MESH_H
 
+#include <stdbool.h>
+
+#include "geometry/substance.h"
 #include "pipeline/import/mesh.h"
 
 /* Vertices belong to one material each. Arrays are owned. */
@@ -24,9 +27,17 @@ struct reduced_mesh {
 	uint32_t *firsts;        /* material_count + 1 */
 };
 
-/* Copies the whole scan. *out is owned by the caller (reduced_mesh_finish); zeroed on failure.
- * Returns -ENOMEM, or -EFBIG for more than 2^31 corners. */
-must_check int reduced_mesh_copy(struct reduced_mesh *out, const struct mesh *mesh);
+/* What a scan looks like. */
+struct reduced_look {
+	bool is_stone; /* of a substance, in place of its own pictures and colours */
+	enum substance_kind substance; /* SUBSTANCE_NONE: the demo's stone */
+};
+
+/* Copies the whole scan, with that look: a substance gives each vertex a colour. *out is owned by
+ * the caller (reduced_mesh_finish); zeroed on failure. Returns -ENOMEM, or -EFBIG for more than
+ * 2^31 corners. */
+must_check int reduced_mesh_copy(struct reduced_mesh *out, const struct mesh *mesh,
+				 struct reduced_look look);
 /* Makes *out of whole, which is a copy of the scan, with about as many triangles: more where seams
  * do not let go of them. Triangles and vertices are in an order that GPUs like. As above. */
 must_check int reduced_mesh_make(struct reduced_mesh *out, const struct reduced_mesh *whole,

@@ -34,10 +34,12 @@ struct maker {
 	double seam_share;
 };
 
-static bool has_pictures(const struct mesh *mesh)
+static bool has_pictures(const struct maker *maker)
 {
-	for (uint32_t i = 0; mesh->uvs && i < mesh->texture_count; i++)
-		if (!mesh_texture_is_colour(&mesh->textures[i]))
+	const struct mesh *scan = maker->scan;
+
+	for (uint32_t i = 0; maker->whole.uvs && i < scan->texture_count; i++)
+		if (!mesh_texture_is_colour(&scan->textures[i]))
 			return true;
 	return false;
 }
@@ -101,7 +103,7 @@ static int fit_both(struct maker *maker, struct texmesh_report *report)
 					    .copy = &maker->whole,
 					    .scales = maker->scales };
 	struct texture_result result = { 0 };
-	const bool pictured = has_pictures(maker->scan);
+	const bool pictured = has_pictures(maker);
 	int rc = fit_triangles(maker, pictured ? (uint64_t)(mesh_share * (double)budget) : budget);
 
 	if (rc < 0)
@@ -176,8 +178,8 @@ int texmesh_make(struct buffer *out, const struct mesh *mesh, const struct texme
 
 	*report = (struct texmesh_report){ .source_triangles = mesh->triangle_count };
 	if (rc == 0)
-		rc = reduced_mesh_copy(&maker.whole, mesh);
-	if (rc == 0 && has_pictures(mesh) && !options->uniform) {
+		rc = reduced_mesh_copy(&maker.whole, mesh, options->look);
+	if (rc == 0 && has_pictures(&maker) && !options->uniform) {
 		maker.scales = malloc((size_t)maker.whole.vertex_count + 1);
 		rc = maker.scales ? vertex_scales_find(maker.scales, &maker.whole, mesh) : -ENOMEM;
 	}

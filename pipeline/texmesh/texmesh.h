@@ -9,6 +9,7 @@
 
 #include "base/bytes.h"
 #include "pipeline/import/mesh.h"
+#include "pipeline/texmesh/reduced_mesh.h"
 
 enum { TEXMESH_BUDGET_LEAST_BYTES = 10000, TEXMESH_BUDGET_MOST_BYTES = 1 << 30 };
 
@@ -17,6 +18,7 @@ struct texmesh_options {
 	uint64_t budget_bytes;
 	bool uniform; /* all fragments have one quality */
 	bool lit;     /* the colours hold no light of their own: a viewer lights them */
+	struct reduced_look look;
 };
 
 struct texmesh_report {

@@ -45,6 +45,14 @@ printf '%s\n' '[model]' 'name = pillar' 'scans = pillar.obj' '[hierarchy]' 'surf
 build/gopura-content export "$work/closed" --budget 100kB --out "$work/closed.glb" >/dev/null || fail "no closed model"
 grep -q KHR_materials_unlit "$work/closed.glb" || fail "the colours of a picture are lit once more"
 
+# Of marble: no picture, but the colours of the stone.
+mkdir "$work/marble"
+cp "$work/scan/"pillar.* "$work/marble/"
+printf '%s\n' '[model]' 'name = pillar' 'scans = pillar.obj' 'colours = marble' >"$work/marble/temple.ini"
+build/gopura-content export "$work/marble" --budget 100kB --out "$work/marble.glb" >/dev/null || fail "no marble"
+grep -q COLOR_0 "$work/marble.glb" && ! grep -q -e image/jpeg -e KHR_materials_unlit "$work/marble.glb" ||
+	fail "the model of marble shows the scan's picture"
+
 # The manifest of a web page, and back.
 cp "$work/of-100000/pillar.glb" "$work/web/"
 build/gopura-content annotations export "$work/scan" --iiif --model pillar.glb --base https://museum.example/pillar \

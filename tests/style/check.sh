@@ -42,7 +42,7 @@ may_enter() {
 	pipeline/import) answer="keys scene" ;; # refuses to hand one to the reader of a scan
 	pipeline/content) answer="import octree" ;;
 	pipeline/octree | pipeline/deform) answer="import" ;;
-	pipeline/texmesh) answer="import samples" ;;
+	pipeline/texmesh) answer="import material samples" ;;
 	pipeline/hierarchy) answer="import material" ;;
 	pipeline/samples) answer="import content material hierarchy" ;;
 	pipeline/release) answer="keys import content hierarchy samples" ;;

@@ -176,7 +176,7 @@ static void relief_gets_the_better_quality(void **state)
 	CHECK(report.scale == 0 && report.quality_most <= report.quality_least + 1);
 	buffer_finish(&file);
 
-	CHECK(reduced_mesh_copy(&whole, &pillar) == 0);
+	CHECK(reduced_mesh_copy(&whole, &pillar, (struct reduced_look){ 0 }) == 0);
 	uint8_t *scales = malloc(whole.vertex_count);
 	CHECK(vertex_scales_find(scales, &whole, &pillar) == 0);
 	for (uint32_t i = 0; i < whole.vertex_count; i++) {
@@ -228,7 +228,7 @@ static void a_seam_stays_closed(void **state)
 	uint32_t open, rims = 0;
 
 	(void)state;
-	CHECK(reduced_mesh_copy(&whole, &pillar) == 0);
+	CHECK(reduced_mesh_copy(&whole, &pillar, (struct reduced_look){ 0 }) == 0);
 	CHECK(reduced_mesh_make(&reduced, &whole, 2000) == 0);
 	assert_in_range(reduced.triangle_count, 1000, 2100);
 	open = count_open(&reduced);
@@ -292,6 +292,39 @@ static void colours_are_means(void **state)
 		fail_msg("%u of %u vertices are grey", grey, mesh.vertex_count);
 	mesh_finish(&mesh);
 	mesh_finish(&temple);
+	buffer_finish(&file);
+}
+
+/* In place of the scan's picture it has the colours of the substance there. */
+static void a_substance_takes_the_place_of_pictures(void **state)
+{
+	const struct texmesh_options options = { .budget_bytes = 400000,
+						 .lit = true,
+						 .look = { true, SUBSTANCE_LATERITE } };
+	struct mesh pillar = make_pillar(), mesh;
+	struct texmesh_report report;
+	struct import_report imported;
+	struct buffer file;
+	double error = 0;
+
+	(void)state;
+	buffer_init(&file, TEXMESH_BUDGET_MOST_BYTES);
+	CHECK(texmesh_make(&file, &pillar, &options, &report) == 0);
+	CHECK(file.size <= 400000 && report.picture_count == 0);
+	read_back(&mesh, &file, &imported);
+	CHECK(imported.textures == 0 && imported.had_colours);
+	for (uint32_t i = 0; i < mesh.vertex_count; i++) {
+		float rgb[3];
+
+		substance_colour(rgb, SUBSTANCE_LATERITE, mesh.positions[i], 0.04f);
+		for (int k = 0; k < 3; k++)
+			error += fabs((double)mesh.colours[i][k] - 255 * (double)rgb[k]);
+	}
+	error /= 3.0 * mesh.vertex_count;
+	if (error > 6)
+		fail_msg("colours are off by %g in the mean", error);
+	mesh_finish(&mesh);
+	mesh_finish(&pillar);
 	buffer_finish(&file);
 }
 
@@ -362,6 +395,7 @@ int main(void)
 		cmocka_unit_test(a_seam_stays_closed),
 		cmocka_unit_test(colours_are_those_of_the_scan_around),
 		cmocka_unit_test(colours_are_means),
+		cmocka_unit_test(a_substance_takes_the_place_of_pictures),
 		cmocka_unit_test(a_second_run_gives_the_same_bytes),
 		cmocka_unit_test(a_picture_that_nothing_shows_takes_nothing),
 		cmocka_unit_test(what_cannot_be_is_said),
