@@ -278,6 +278,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BENCH_PARTS) $(ARCHIVE) |
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
+$(BUILD)/tests/storage/test_state: EXTRA += -Wl,--wrap=open,--wrap=realloc
 $(BUILD)/tests/pipeline/content/test_scan_surface: EXTRA += -Wl,--wrap=fsync
 $(BUILD)/tests/pipeline/release/test_publish: EXTRA += -Wl,--wrap=fsync,--wrap=rename
 $(BUILD)/tests/pipeline/release/test_renewal: EXTRA += -Wl,--wrap=clock_wall_s

@@ -55,6 +55,12 @@ static void take_column(struct buffer *out, sqlite3_stmt *row, int column)
 		buffer_put(out, bytes, (size_t)size);
 }
 
+/* What there was no memory for is not damaged. */
+static int damage_of(int rc)
+{
+	return rc < 0 && rc != -ENOMEM ? -EBADMSG : rc;
+}
+
 /* Reads a release from four consecutive columns. */
 static int take_release(struct kept_release *out, sqlite3_stmt *row, int column)
 {
@@ -70,28 +76,38 @@ static int take_release(struct kept_release *out, sqlite3_stmt *row, int column)
 static int take_row(struct record *out, sqlite3_stmt *row)
 {
 	struct hash check;
+	int rc;
 
 	out->sequence_floor = (uint64_t)sqlite3_column_int64(row, 0);
 	out->stored_time_floor_s = sqlite3_column_int64(row, 1);
 	take_column(&out->trust, row, 6);
 	out->tries = (uint32_t)sqlite3_column_int64(row, 7);
 	if (take_release(&out->release, row, 2) < 0 || take_release(&out->previous, row, 8) < 0 ||
-	    sqlite3_column_bytes(row, 12) != HASH_BYTES || record_error(out) < 0 ||
-	    record_hash(&check, out) < 0)
+	    sqlite3_column_bytes(row, 12) != HASH_BYTES)
 		return -EBADMSG;
+	rc = record_error(out);
+	if (rc == 0)
+		rc = record_hash(&check, out);
+	if (rc < 0)
+		return damage_of(rc);
 	return memcmp(check.bytes, sqlite3_column_blob(row, 12), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
 
 static int take_tuf(struct record *out, sqlite3_stmt *row)
 {
 	struct hash check;
+	int rc;
 
 	out->tuf.changes = (uint64_t)sqlite3_column_int64(row, 0);
 	for (int i = 0; i < KEPT_TUF_FILES; i++)
 		take_column(&out->tuf.files[i], row, 1 + i);
-	if (sqlite3_column_bytes(row, 5) != HASH_BYTES || record_error(out) < 0 ||
-	    record_tuf_hash(&check, out) < 0)
+	if (sqlite3_column_bytes(row, 5) != HASH_BYTES)
 		return -EBADMSG;
+	rc = record_error(out);
+	if (rc == 0)
+		rc = record_tuf_hash(&check, out);
+	if (rc < 0)
+		return damage_of(rc);
 	return memcmp(check.bytes, sqlite3_column_blob(row, 5), HASH_BYTES) == 0 ? 0 : -EBADMSG;
 }
 
@@ -245,19 +261,38 @@ static int open_db(struct state *state)
 	return rc == -EROFS && access(state->path, W_OK) == 0 ? -EBADMSG : rc;
 }
 
+/* Forgets what was read of a record, and waits a moment. */
+static void begin_again(struct record *record)
+{
+	const struct timespec moment = { .tv_nsec = OPEN_PAUSE_MS * 1000000 };
+
+	record_finish(record);
+	record_init(record);
+	nanosleep(&moment, NULL);
+}
+
 /* The same, again after a moment where it cannot be read: until the next start nothing can be
  * stored otherwise. */
 static int open_patiently(struct state *state)
 {
-	const struct timespec moment = { .tv_nsec = OPEN_PAUSE_MS * 1000000 };
 	int rc = open_db(state);
 
 	for (int tries = 1; tries < OPEN_TRIES && is_transient(rc); tries++) {
 		close_db(state);
-		record_finish(&state->record);
-		record_init(&state->record);
-		nanosleep(&moment, NULL);
+		begin_again(&state->record);
 		rc = open_db(state);
+	}
+	return rc;
+}
+
+/* The same for the second copy: what takes its place would be written over it. */
+static int read_second_patiently(struct record *out, const char *path)
+{
+	int rc = record_read_second(out, path);
+
+	for (int tries = 1; tries < OPEN_TRIES && is_transient(rc); tries++) {
+		begin_again(out);
+		rc = record_read_second(out, path);
 	}
 	return rc;
 }
@@ -295,7 +330,7 @@ static int compare_with_second(struct state *state)
 	int rc;
 
 	record_init(&second);
-	rc = record_read_second(&second, state->path);
+	rc = read_second_patiently(&second, state->path);
 	if (rc == 0)
 		rc = root_version(&its_root, &second);
 	if (rc == 0)
@@ -330,7 +365,7 @@ static void recover(struct state *state, int rc)
 			  state->db ? sqlite3_errmsg(state->db) : strerror(-rc));
 		close_db(state);
 	}
-	if (record_read_second(&state->record, state->path) < 0) {
+	if (read_second_patiently(&state->record, state->path) < 0) {
 		record_finish(&state->record);
 		record_init(&state->record);
 		if (damaged)

@@ -129,7 +129,7 @@ static void release_decode(struct kept_release *out, struct reader *reader)
 	get_sized(&out->file, reader);
 }
 
-/* -EBADMSG: not such a record, or it was changed after it was written. */
+/* -EBADMSG: not such a record, or it was changed after it was written. -ENOMEM. */
 static int record_decode(struct record *out, struct bytes file)
 {
 	struct bytes body = { file.data, file.size - HASH_BYTES };
@@ -162,7 +162,9 @@ static int record_decode(struct record *out, struct bytes file)
 		for (int i = 0; i < KEPT_TUF_FILES; i++)
 			get_sized(&out->tuf.files[i], &reader);
 	}
-	return reader.failed || reader_left(&reader) || record_error(out) < 0 ? -EBADMSG : 0;
+	if (reader.failed || reader_left(&reader) > 0)
+		return -EBADMSG;
+	return record_error(out) == -EFBIG ? -EBADMSG : record_error(out);
 }
 
 int record_hash(struct hash *out, const struct record *record)

@@ -68,7 +68,8 @@ must_check int record_tuf_hash(struct hash *out, const struct record *record);
 void record_copy_tuf(struct record *record, const struct record *from);
 
 /* Reads PATH.second, where path is that of the database. -EBADMSG: not such a record, or it was
- * changed after it was written. *out must be finished in any case. */
+ * changed after it was written. -ENOMEM, and the errors of reading a file. *out must be finished in
+ * any case. */
 must_check int record_read_second(struct record *out, const char *path);
 /* Writes PATH.second; the old copy stays on failure. Returns 0 or a negative errno. */
 must_check int record_write_second(const struct record *record, const char *path);

@@ -17,6 +17,30 @@
 
 static char folder[64], path[96];
 
+/* Of calls of our own code: the second copy cannot be opened so often, and one allocation fails. */
+static int seconds_that_fail;
+static long allocations, allocation_that_fails = -1;
+
+int __real_open(const char *name, int flags, ...);
+int __wrap_open(const char *name, int flags, ...);
+void *__real_realloc(void *at, size_t size);
+void *__wrap_realloc(void *at, size_t size);
+
+int __wrap_open(const char *name, int flags, ...)
+{
+	if (seconds_that_fail > 0 && strstr(name, ".second")) {
+		seconds_that_fail--;
+		errno = EIO;
+		return -1;
+	}
+	return __real_open(name, flags);
+}
+
+void *__wrap_realloc(void *at, size_t size)
+{
+	return allocations++ == allocation_that_fails ? NULL : __real_realloc(at, size);
+}
+
 static int enter_empty_folder(void **unused)
 {
 	(void)unused;
@@ -210,6 +234,46 @@ static void a_read_that_fails_is_no_damage(void **unused)
 	fault_set(FAULT_NONE, 0, 0);
 	state = open_state();
 	CHECK(!exists(".broken") && active(state) == last && activate(state, 250) == 0);
+	state_destroy(state);
+}
+
+static void a_lack_of_memory_is_no_damage(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(activate(state, 7) == 0);
+	state_destroy(state);
+	allocations = 0;
+	for (long at = 0; at <= allocations; at++) {
+		int rc;
+
+		allocations = 0;
+		allocation_that_fails = at;
+		rc = state_create(&state, path);
+		allocation_that_fails = -1;
+		CHECK(rc == -ENOMEM || (rc == 0 && active(state) == 7));
+		CHECK(!exists(".broken"));
+		if (rc == 0)
+			state_destroy(state);
+		CHECK(at < 200);
+	}
+	CHECK(allocations > 8);
+}
+
+/* It would be written over by what begins in its place. */
+static void waits_for_a_second_copy_that_cannot_be_read_at_once(void **unused)
+{
+	struct state *state = open_state();
+
+	(void)unused;
+	CHECK(activate(state, 7) == 0);
+	state_destroy(state);
+	write_at("", 0, "no database");
+	seconds_that_fail = 2;
+	state = open_state();
+	CHECK(seconds_that_fail == 0 && exists(".broken"));
+	CHECK(active(state) == 7 && state_sequence_floor(state) == 7);
 	state_destroy(state);
 }
 
@@ -718,6 +782,8 @@ int main(void)
 		IN_A_FOLDER(refuses_a_file_past_its_ceiling),
 		IN_A_FOLDER(comes_back_from_the_second_copy),
 		IN_A_FOLDER(a_read_that_fails_is_no_damage),
+		IN_A_FOLDER(a_lack_of_memory_is_no_damage),
+		IN_A_FOLDER(waits_for_a_second_copy_that_cannot_be_read_at_once),
 		IN_A_FOLDER(begins_anew_when_both_copies_are_damaged),
 		IN_A_FOLDER(keeps_the_floor_when_an_old_database_is_put_back),
 		IN_A_FOLDER(clears_the_floors_that_it_is_told_to),
