@@ -248,7 +248,7 @@ static int decode_packed(struct hierarchy *out, struct bytes packed)
 	uint8_t *rows, *columns;
 	int rc;
 
-	if (ZSTD_getFrameContentSize(packed.data, packed.size) != size)
+	if (!unpack_zstd_fits(size, packed))
 		return -EBADMSG;
 	rows = malloc(size);
 	columns = malloc(size);

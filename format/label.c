@@ -357,9 +357,8 @@ int label_group_decode(struct label_group *out, struct bytes object)
 	raw_size = reader_u32(&reader);
 	packed = reader_bytes(&reader, reader_left(&reader));
 	if (reader.failed || memcmp(head.data, magic, sizeof(magic)) != 0 || version != VERSION ||
-	    out->patch_count > GROUP_PATCHES_MAX || raw_size > RAW_BYTES_MAX || packed.size == 0 ||
-	    ZSTD_getFrameContentSize(packed.data, packed.size) != raw_size ||
-	    ZSTD_findFrameCompressedSize(packed.data, packed.size) != packed.size) {
+	    out->patch_count > GROUP_PATCHES_MAX || raw_size > RAW_BYTES_MAX ||
+	    !unpack_zstd_fits(raw_size, packed)) {
 		out->patch_count = 0;
 		return -EBADMSG;
 	}

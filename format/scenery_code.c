@@ -501,7 +501,6 @@ int scenery_decode(struct scenery *out, struct bytes object)
 	struct bytes packed;
 	uint8_t *raw;
 	uint32_t raw_bytes;
-	bool is_good;
 	int rc = 0;
 
 	*out = (struct scenery){ 0 };
@@ -513,10 +512,7 @@ int scenery_decode(struct scenery *out, struct bytes object)
 	(void)reader_bytes(&in, 5);
 	raw_bytes = reader_u32(&in);
 	packed = reader_bytes(&in, reader_left(&in));
-	is_good = raw_bytes <= RAW_BYTES_MAX &&
-		  ZSTD_getFrameContentSize(packed.data, packed.size) == raw_bytes &&
-		  ZSTD_findFrameCompressedSize(packed.data, packed.size) == packed.size;
-	if (!is_good)
+	if (raw_bytes > RAW_BYTES_MAX || !unpack_zstd_fits(raw_bytes, packed))
 		return -EBADMSG;
 	raw = malloc((size_t)raw_bytes + 1);
 	if (!raw)

@@ -7,6 +7,12 @@
 #include <zstd.h>
 #include <zstd_errors.h>
 
+bool unpack_zstd_fits(size_t bytes, struct bytes packed)
+{
+	return packed.size > 0 && ZSTD_getFrameContentSize(packed.data, packed.size) == bytes &&
+	       ZSTD_findFrameCompressedSize(packed.data, packed.size) == packed.size;
+}
+
 int unpack_zstd(uint8_t *out, size_t bytes, struct bytes packed)
 {
 	const size_t got = ZSTD_decompress(out, bytes, packed.data, packed.size);

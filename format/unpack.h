@@ -7,6 +7,9 @@
 
 #include "base/bytes.h"
 
+/* Returns whether packed is one frame of zstd with nothing behind it, which says that it holds so
+ * many bytes. To be asked before there is room for them. */
+bool unpack_zstd_fits(size_t bytes, struct bytes packed);
 /* Decompresses a frame of zstd into `bytes` bytes. -EBADMSG: it is damaged, or has another size;
  * -ENOMEM. */
 must_check int unpack_zstd(uint8_t *out, size_t bytes, struct bytes packed);

@@ -85,16 +85,23 @@ static void refuses_every_truncation_and_anything_behind(void **state)
 {
 	struct example example;
 	struct buffer payload;
+	uint8_t empty[64];
+	size_t size;
 
 	(void)state;
 	example_init(&example);
 	buffer_init(&payload, 1 << 16);
 	CHECK(hierarchy_encode(&payload, &example.hierarchy) == 0);
-	for (size_t n = 0; n < payload.size; n++)
+	size = payload.size;
+	for (size_t n = 0; n < size; n++)
 		CHECK(decode_exact(payload.data, n) == -EBADMSG);
-	CHECK(decode_exact(payload.data, payload.size) == 0);
+	CHECK(decode_exact(payload.data, size) == 0);
 	buffer_put_u8(&payload, 1);
 	CHECK(decode_exact(payload.data, payload.size) == -EBADMSG);
+	/* another frame, with nothing in it */
+	payload.size = size;
+	buffer_put(&payload, empty, ZSTD_compress(empty, sizeof(empty), "", 0, 1));
+	CHECK(payload.size > size && decode_exact(payload.data, payload.size) == -EBADMSG);
 	buffer_finish(&payload);
 }
 
