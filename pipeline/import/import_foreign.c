@@ -93,6 +93,19 @@ static const struct aiVector3D *coordinates_of(const struct aiMesh *mesh,
 		       : NULL;
 }
 
+/* Gets the colour of a material's body. assimp gives that of glTF twice; where the material is
+ * specular and glossy (KHR_materials_pbrSpecularGlossiness), the first is only a default. */
+static bool body_colour_of(const struct aiMaterial *material, struct aiColor4D *colour)
+{
+	float glossiness;
+	const bool is_glossy = aiGetMaterialFloat(material, AI_MATKEY_GLOSSINESS_FACTOR,
+						  &glossiness) == aiReturn_SUCCESS;
+
+	return (!is_glossy &&
+		aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, colour) == aiReturn_SUCCESS) ||
+	       aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS;
+}
+
 /* Gets a material's plain colour. Returns false if it is only a default (that of assimp, or white,
  * that of the formats). */
 static bool plain_colour_of(const struct aiMaterial *material, struct import_foreign_format format,
@@ -107,8 +120,7 @@ static bool plain_colour_of(const struct aiMaterial *material, struct import_for
 	if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS &&
 	    strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0)
 		return false;
-	if (aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) != aiReturn_SUCCESS &&
-	    aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &colour) != aiReturn_SUCCESS)
+	if (!body_colour_of(material, &colour))
 		return false;
 	rgb[0] = colour_byte(colour.r, format.is_linear);
 	rgb[1] = colour_byte(colour.g, format.is_linear);
@@ -126,8 +138,7 @@ static bool factor_of(const struct aiMaterial *material, struct import_foreign_f
 
 	for (int k = 0; k < 3; k++)
 		factor[k] = 1;
-	if (!format.is_linear ||
-	    aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) != aiReturn_SUCCESS)
+	if (!format.is_linear || !body_colour_of(material, &colour))
 		return false;
 	factor[0] = colour.r;
 	factor[1] = colour.g;

@@ -368,14 +368,14 @@ static void ply_pictures_are_upright_by_vertex_and_by_corner(void **state)
 	}
 }
 
-/* A square that shows my skin.png. %s: attributes, and what the material says of its picture and of
- * itself. Names are URIs. */
+/* A square that may show my skin.png. %s: attributes, and the material. Names are URIs. */
 static const char gltf_format[] =
-	"{\"extensionsUsed\":[\"KHR_texture_transform\"],\"asset\":{\"version\":\"2.0\"},"
+	"{\"extensionsUsed\":[\"KHR_texture_transform\","
+	"\"KHR_materials_pbrSpecularGlossiness\"],\"asset\":{\"version\":\"2.0\"},"
 	"\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"translation\":[-2,0,0]}],"
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},"
 	"\"indices\":2,\"material\":0}]}],"
-	"\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0%s}%s}}],"
+	"\"materials\":[{%s}],"
 	"\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"my%%20skin.png\"}],"
 	"\"buffers\":[{\"uri\":\"my%%20square.bin\",\"byteLength\":92}],"
 	"\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},"
@@ -389,7 +389,7 @@ static const char gltf_format[] =
 	"{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}]}";
 
 struct gltf_square {
-	const char *attributes, *of_picture, *of_material;
+	const char *attributes, *material;
 	float uvs[4][2];
 };
 
@@ -407,8 +407,8 @@ static void import_square(const struct gltf_square *square, struct mesh *mesh,
 	char path[256], gltf[2048];
 
 	memcpy(data.uvs, square->uvs, sizeof(data.uvs));
-	CHECK(snprintf(gltf, sizeof(gltf), gltf_format, square->attributes, square->of_picture,
-		       square->of_material) < (int)sizeof(gltf));
+	CHECK(snprintf(gltf, sizeof(gltf), gltf_format, square->attributes, square->material) <
+	      (int)sizeof(gltf));
 	scan_write(path, "square.gltf", gltf, strlen(gltf));
 	scan_write_beside(path, "my square.bin", &data, 92);
 	write_picture(path, "my skin.png");
@@ -423,17 +423,15 @@ static void gltf_pictures_lie_where_the_file_has_them(void **state)
 {
 	static const struct gltf_square squares[] = {
 		{ ",\"TEXCOORD_0\":1",
-		  "",
-		  "",
+		  "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}",
 		  { { .1f, .9f }, { .9f, .9f }, { .9f, .1f }, { .1f, .1f } } },
 		{ ",\"TEXCOORD_0\":1",
-		  ",\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.05,0.95],"
-		  "\"rotation\":1.57079632679,\"scale\":[0.5,0.5]}}",
-		  "",
+		  "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+		  "\"KHR_texture_transform\":{\"offset\":[0.05,0.95],\"rotation\":1.57079632679,"
+		  "\"scale\":[0.5,0.5]}}}}",
 		  { { .1f, .1f }, { .1f, 1.7f }, { 1.7f, 1.7f }, { 1.7f, .1f } } },
 		{ ",\"TEXCOORD_0\":3,\"TEXCOORD_1\":1",
-		  ",\"texCoord\":1",
-		  "",
+		  "\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}",
 		  { { .1f, .9f }, { .9f, .9f }, { .9f, .1f }, { .1f, .1f } } },
 	};
 	(void)state;
@@ -448,27 +446,62 @@ static void gltf_pictures_lie_where_the_file_has_them(void **state)
 	}
 }
 
-/* Half of the light is 188 in sRGB. Positions stand for colours of 1 and more. */
-static void gltf_multiplies_light_with_the_base_colour(void **state)
+/* Half of the light is 188 in sRGB. Sketchfab gave glossy materials for years. */
+static void gltf_multiplies_pictures_with_the_colour(void **state)
 {
-	static const char factor[] = ",\"baseColorFactor\":[0.5,0.5,0,1]";
+	static const char *const materials[] = {
+		"\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0},"
+		"\"baseColorFactor\":[0.5,0.5,0,1]}",
+		"\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseTexture\":{"
+		"\"index\":0},\"diffuseFactor\":[0.5,0.5,0,1]}}",
+	};
 	static const uint8_t skin[12] = { 188, 0, 0, 0, 188, 0, 0, 0, 0, 188, 188, 0 };
-	const struct gltf_square pictured = { ",\"TEXCOORD_0\":1", "", factor, { { 0 } } };
-	const struct gltf_square coloured = { ",\"COLOR_0\":4", "", factor, { { 0 } } };
-	struct import_report report;
-	struct mesh mesh;
 	(void)state;
 
-	import_square(&pictured, &mesh, &report);
-	CHECK(report.textures == 1 && mesh.textures[mesh.materials[0]].width == 2);
-	CHECK(memcmp(mesh.textures[mesh.materials[0]].rgb, skin, sizeof(skin)) == 0);
-	mesh_finish(&mesh);
-	import_square(&coloured, &mesh, &report);
-	CHECK(report.textures == 0 && report.had_colours);
-	CHECK(mesh.colours[0][0] == 255 && mesh.colours[0][1] == 0);
-	CHECK(mesh.colours[vertex_at(&mesh, 1, 1)][1] == 188);
-	CHECK(mesh.colours[vertex_at(&mesh, 1, 1)][2] == 0);
-	mesh_finish(&mesh);
+	for (size_t i = 0; i < ARRAY_COUNT(materials); i++) {
+		const struct gltf_square square = { ",\"TEXCOORD_0\":1", materials[i], { { 0 } } };
+		struct import_report report;
+		struct mesh mesh;
+
+		import_square(&square, &mesh, &report);
+		CHECK(report.textures == 1 && mesh.textures[mesh.materials[0]].width == 2);
+		CHECK(memcmp(mesh.textures[mesh.materials[0]].rgb, skin, sizeof(skin)) == 0);
+		mesh_finish(&mesh);
+	}
+}
+
+/* Positions stand for colours of vertices, of 1 and more. */
+static void gltf_multiplies_colours_with_the_colour(void **state)
+{
+	static const struct {
+		const char *attributes, *material;
+		uint8_t colour[3]; /* at 1 1 */
+	} cases[] = {
+		{ ",\"COLOR_0\":4",
+		  "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0,1]}",
+		  { 255, 188, 0 } },
+		{ "",
+		  "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.5,0,1]}",
+		  { 188, 188, 0 } },
+		{ "",
+		  "\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{"
+		  "\"diffuseFactor\":[0.5,0.5,0,1]}}",
+		  { 188, 188, 0 } },
+	};
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		const struct gltf_square square = { cases[i].attributes,
+						    cases[i].material,
+						    { { 0 } } };
+		struct import_report report;
+		struct mesh mesh;
+
+		import_square(&square, &mesh, &report);
+		CHECK(report.textures == 0 && report.had_colours);
+		CHECK(memcmp(mesh.colours[vertex_at(&mesh, 1, 1)], cases[i].colour, 3) == 0);
+		mesh_finish(&mesh);
+	}
 }
 
 /* As the second scan of a folder: the reader process begins with what the first one takes. */
@@ -808,7 +841,8 @@ int main(void)
 		cmocka_unit_test(obj_pictures_are_upright_and_found_past_foreign_paths),
 		cmocka_unit_test(ply_pictures_are_upright_by_vertex_and_by_corner),
 		cmocka_unit_test(gltf_pictures_lie_where_the_file_has_them),
-		cmocka_unit_test(gltf_multiplies_light_with_the_base_colour),
+		cmocka_unit_test(gltf_multiplies_pictures_with_the_colour),
+		cmocka_unit_test(gltf_multiplies_colours_with_the_colour),
 		cmocka_unit_test(a_small_scan_is_read_beside_a_large_one),
 		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
 		cmocka_unit_test(what_was_left_out_is_a_warning),
