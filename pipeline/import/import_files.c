@@ -3,6 +3,7 @@
  * out of it. */
 #include "pipeline/import/import_files.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -84,6 +85,31 @@ static int failed(int folder, const char *name)
 	return rc;
 }
 
+/* Finds the one entry of the folder whose name differs in the case of letters alone. Windows and
+ * macOS take it for the same, so nobody there sees that the scan names it otherwise. -ENOENT: there
+ * is none, or several. */
+static int find_other_case(int folder, const char *name, char other[NAME_MAX + 1])
+{
+	int fd = openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC), count = 0;
+	DIR *entries = fd < 0 ? NULL : fdopendir(fd);
+	const struct dirent *entry;
+	int rc;
+
+	if (!entries) {
+		rc = is_transient(-errno) ? -errno : -ENOENT;
+		if (fd >= 0)
+			close(fd);
+		return rc;
+	}
+	while ((entry = readdir(entries)))
+		if (strcasecmp(entry->d_name, name) == 0) {
+			snprintf(other, NAME_MAX + 1, "%s", entry->d_name);
+			count++;
+		}
+	closedir(entries);
+	return count == 1 ? 0 : -ENOENT;
+}
+
 /* Opens a regular file only. A FIFO would block, and opening a device may trigger an action, so the
  * type is checked before and after opening. */
 static int open_regular(int folder, const char *name)
@@ -110,18 +136,27 @@ static int open_regular(int folder, const char *name)
 	return fd;
 }
 
+static int open_folder(int at, const char *name)
+{
+	int fd = openat(at, name, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+
+	return fd < 0 ? failed(at, name) : fd;
+}
+
 /* Opens the folder `name` in the folder `at`. at is closed. */
 static int step_into(int at, const char *name, size_t length)
 {
-	char part[NAME_MAX + 1];
+	char part[NAME_MAX + 1], other[NAME_MAX + 1];
 	int next = -ENAMETOOLONG;
 
 	if (length <= NAME_MAX) {
 		memcpy(part, name, length);
 		part[length] = '\0';
-		next = openat(at, part, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-		if (next < 0)
-			next = failed(at, part);
+		next = open_folder(at, part);
+		if (next == -ENOENT) {
+			next = find_other_case(at, part, other);
+			next = next < 0 ? next : open_folder(at, other);
+		}
 	}
 	close(at);
 	return next;
@@ -131,6 +166,7 @@ static int step_into(int at, const char *name, size_t length)
 static int open_below(int folder, const char *name)
 {
 	int at = fcntl(folder, F_DUPFD_CLOEXEC, 0);
+	char other[NAME_MAX + 1];
 	int fd;
 
 	if (at < 0)
@@ -144,6 +180,10 @@ static int open_below(int folder, const char *name)
 	if (at < 0)
 		return at;
 	fd = open_regular(at, name);
+	if (fd == -ENOENT) {
+		fd = find_other_case(at, name, other);
+		fd = fd < 0 ? fd : open_regular(at, other);
+	}
 	close(at);
 	return fd;
 }

@@ -16,10 +16,12 @@ bool import_has_extension(const char *name, const char *extension);
 
 /* Opens a file that a scan names. The name is looked up as given, if that stays below the scan's
  * folder, and else by its last component in the folder itself (exporters like to write
- * C:\Users\...); then likewise with %20 and the like decoded, because names in glTF are URIs. Only
- * regular files; no link is followed, no hidden file or folder used, no signing key opened. Returns
- * a descriptor owned by the caller, or: -ENOENT: not found; -EXDEV: outside the folder; -ELOOP: a
- * link; -EINVAL: not a regular file; -EKEYREJECTED: a signing key; other negative errno. */
+ * C:\Users\...); then likewise with %20 and the like decoded, because names in glTF are URIs. Where
+ * a name is not there, the only one that differs in the case of letters is taken, as Windows does.
+ * Only regular files; no link is followed, no hidden file or folder used, no signing key opened.
+ * Returns a descriptor owned by the caller, or: -ENOENT: not found; -EXDEV: outside the folder;
+ * -ELOOP: a link; -EINVAL: not a regular file; -EKEYREJECTED: a signing key; other negative errno.
+ */
 must_check int import_files_open_at(int folder_fd, const char *name);
 /* Opens the folder of a scan for import_files_open_at. Returns a descriptor owned by the caller, or
  * a negative errno. */

@@ -198,8 +198,7 @@ static void a_missing_file_is_told_as_missing(void **state)
 
 	put_gltf("scans/c.gltf", "nowhere.bin");
 	CHECK(import("scans/c.gltf", &mesh, NULL, &diagnostics) < 0);
-	if (!strstr(diagnostics.first.text, "nowhere.bin") ||
-	    !strstr(diagnostics.first.text, "could not open"))
+	if (!strstr(diagnostics.first.text, "'nowhere.bin', which is not beside it; copy"))
 		fail_msg("'%s'", diagnostics.first.text);
 	/* As always, where only colours are lost; a drive's name is no place of this machine. */
 	put("scans/c.obj",
@@ -299,6 +298,40 @@ static void names_are_decoded_if_they_are_not_there_as_written(void **state)
 				  : fd != cases[i].rc)
 			fail_msg("%s: %d", cases[i].name, fd);
 		if (strcmp(text, right) != 0)
+			fail_msg("%s: '%s'", cases[i].name, text);
+		if (fd >= 0)
+			close(fd);
+	}
+	close(folder);
+}
+
+/* Nobody who exports on Windows sees that a name is written otherwise in the scan. */
+static void the_case_of_letters_decides_only_where_it_must(void **state)
+{
+	static const struct {
+		const char *name, *text; /* NULL: not found */
+	} cases[] = {
+		{ "skin.jpg", "skin" },   { "DEEP/Coat.BIN", "coat" }, { "Two.bin", NULL },
+		{ "two.bin", "exactly" }, { "skin.jpeg", NULL },
+	};
+	char path[PATH_MAX], text[20];
+	int folder;
+	(void)state;
+
+	put("scans/Skin.JPG", "skin");
+	put("scans/deep/coat.bin", "coat");
+	put("scans/two.bin", "exactly");
+	put("scans/TWO.bin", "otherwise");
+	at(path, "scans/f.ply");
+	folder = import_files_open_folder(path);
+	CHECK(folder >= 0);
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		int fd = import_files_open_at(folder, cases[i].name);
+
+		memset(text, 0, sizeof(text));
+		if (cases[i].text ? fd < 0 || read(fd, text, sizeof(text) - 1) < 0 : fd != -ENOENT)
+			fail_msg("%s: %d", cases[i].name, fd);
+		if (cases[i].text && strcmp(text, cases[i].text) != 0)
 			fail_msg("%s: '%s'", cases[i].name, text);
 		if (fd >= 0)
 			close(fd);
@@ -450,6 +483,7 @@ int main(void)
 		cmocka_unit_test(a_missing_file_is_told_as_missing),
 		cmocka_unit_test(pictures_from_elsewhere_are_not_read),
 		cmocka_unit_test(names_are_decoded_if_they_are_not_there_as_written),
+		cmocka_unit_test(the_case_of_letters_decides_only_where_it_must),
 		cmocka_unit_test(a_file_counts_once_however_often_it_is_named),
 		cmocka_unit_test(pictures_have_a_limit_together),
 		cmocka_unit_test(a_fifo_is_no_scan),
