@@ -60,11 +60,28 @@ static int plain_texture(struct mesh *mesh, struct map *plains, const uint8_t rg
 	return rc < 0 ? rc : map_set(plains, key, *number);
 }
 
-/* Loads the pictures, and makes one of a pixel for each colour of what has none. */
-static int load_textures(struct mesh *mesh, const struct vrml_surface *from,
-			 struct import_files *files, struct import_report *report)
+/* Loads the picture that a node names. */
+static int load_texture(struct mesh_texture *out, const struct vrml *scene,
+			const struct vrml_node *node, struct import_files *files,
+			struct import_report *report)
 {
 	static const uint8_t white[3] = { 255, 255, 255 };
+	const struct vrml_options options = { .open_file = open_file, .data = files };
+	const struct vrml_value *urls = vrml_get(node, "url");
+	const char *url = urls->count > 0 ? urls->strings[0] : "";
+	char name[VRML_NAME_BYTES];
+	int fd = vrml_open(scene, node, url, &options, name);
+
+	if (fd >= 0)
+		close(fd);
+	return import_texture(out, files, fd >= 0 && name[0] ? name : url, white, report);
+}
+
+/* Loads the pictures, and makes one of a pixel for each colour of what has none. */
+static int load_textures(struct mesh *mesh, const struct vrml *scene,
+			 const struct vrml_surface *from, struct import_files *files,
+			 struct import_report *report)
+{
 	struct map plains = { 0 };
 	int rc = 0;
 
@@ -73,10 +90,7 @@ static int load_textures(struct mesh *mesh, const struct vrml_surface *from,
 	if (!mesh->textures || !mesh->materials)
 		return -ENOMEM;
 	for (uint32_t i = 0; i < from->texture_count && rc == 0; i++) {
-		const struct vrml_value *urls = vrml_get(from->textures[i], "url");
-
-		rc = import_texture(&mesh->textures[i], files,
-				    urls->count > 0 ? urls->strings[0] : "", white, report);
+		rc = load_texture(&mesh->textures[i], scene, from->textures[i], files, report);
 		mesh->texture_count += rc == 0;
 	}
 	for (uint32_t i = 0; i < from->soup.count && rc == 0; i++) {
@@ -91,8 +105,8 @@ static int load_textures(struct mesh *mesh, const struct vrml_surface *from,
 	return rc;
 }
 
-static int make_mesh(struct mesh *mesh, const struct vrml_surface *from, struct import_files *files,
-		     struct import_report *report)
+static int make_mesh(struct mesh *mesh, const struct vrml *scene, const struct vrml_surface *from,
+		     struct import_files *files, struct import_report *report)
 {
 	size_t corners = 3 * (size_t)from->soup.count;
 	bool has_pictures = from->texture_count > 0;
@@ -120,7 +134,7 @@ static int make_mesh(struct mesh *mesh, const struct vrml_surface *from, struct 
 	}
 	mesh->vertex_count = (uint32_t)corners;
 	mesh->triangle_count = from->soup.count;
-	return has_pictures ? load_textures(mesh, from, files, report) : 0;
+	return has_pictures ? load_textures(mesh, scene, from, files, report) : 0;
 }
 
 static int make(struct mesh *out, const struct vrml *scene, const char *path,
@@ -144,7 +158,7 @@ static int make(struct mesh *out, const struct vrml *scene, const char *path,
 				"what moves in it (%u ROUTE) was left out: it is shown at rest",
 				scene->route_count);
 	if (rc == 0) {
-		rc = make_mesh(out, &surface, files, report);
+		rc = make_mesh(out, scene, &surface, files, report);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, path, 0, "%s",
 					rc == -EFBIG ? "too many pictures and colours; split it"

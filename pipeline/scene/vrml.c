@@ -24,6 +24,7 @@ int vrml_read(struct vrml **out, struct bytes text, const char *path,
 		return -ENOMEM;
 	parser.scene->arena.ceiling_bytes = VRML_MEMORY_BYTES_MAX;
 	source = vrml_add_source(&parser, path);
+	parser.scene->path = source ? source->path : NULL;
 	rc = source ? vrml_source_text(&parser, source, text) : -ENOMEM;
 	if (rc == 0)
 		rc = vrml_parse_source(&parser, source);

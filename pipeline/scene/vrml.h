@@ -42,6 +42,7 @@ struct vrml_route {
 
 struct vrml {
 	struct arena arena; /* holds all the others */
+	const char *path;   /* of its file; nodes of files that it names have another in `file` */
 	struct vrml_node *const *roots;
 	uint32_t root_count;
 	const struct vrml_route *routes; /* the last one; NULL: none */
@@ -62,6 +63,15 @@ must_check int vrml_read(struct vrml **out, struct bytes text, const char *path,
 			 const struct vrml_options *options, struct diagnostics *diagnostics,
 			 struct diagnostics *warnings);
 void vrml_destroy(struct vrml *scene); /* NULL is fine */
+
+enum { VRML_NAME_BYTES = 256 }; /* of a file in the scene's folder, with its folders */
+
+/* Opens what a node names: beside the file that it stands in; else as it is named, in the scene's
+ * folder, where open_file may look for what other machines called "C:\\...". name becomes what
+ * open_file was asked for last; "" if that is longer. Returns its descriptor, or a negative errno.
+ */
+must_check int vrml_open(const struct vrml *scene, const struct vrml_node *node, const char *url,
+			 const struct vrml_options *options, char name[VRML_NAME_BYTES]);
 
 /* Returns the value of a field that the node's type has; NULL: it was not given. */
 const struct vrml_value *vrml_get(const struct vrml_node *node, const char *field);

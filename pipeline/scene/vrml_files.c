@@ -1,4 +1,5 @@
-/* The files of a scene: that which is read, and those that Inline and EXTERNPROTO name. */
+/* The files of a scene: that which is read, and those that Inline, EXTERNPROTO and textures name.
+ */
 #include "pipeline/scene/vrml_files.h"
 
 #include <errno.h>
@@ -6,8 +7,6 @@
 #include <unistd.h>
 
 #include "pipeline/scene/vrml_text.h"
-
-enum { NAME_BYTES = 256 }; /* of a file in the scan's folder, with its folders */
 
 /* Adds a file; its text is still empty. NULL: no memory, or too many. */
 struct vrml_source *vrml_add_source(struct vrml_parser *parser, const char *path)
@@ -51,7 +50,8 @@ static size_t parent_of(const char *path, size_t size)
 
 /* Appends a component to a path. Returns false if it leads out of the scan's folder, or is too
  * long. */
-static bool append_component(char name[NAME_BYTES], size_t *size, const char *part, size_t length)
+static bool append_component(char name[VRML_NAME_BYTES], size_t *size, const char *part,
+			     size_t length)
 {
 	if (length == 0 || (length == 1 && part[0] == '.'))
 		return true;
@@ -61,7 +61,7 @@ static bool append_component(char name[NAME_BYTES], size_t *size, const char *pa
 		*size = parent_of(name, *size);
 		return true;
 	}
-	if (*size + 1 + length >= NAME_BYTES)
+	if (*size + 1 + length >= VRML_NAME_BYTES)
 		return false;
 	if (*size > 0)
 		name[(*size)++] = '/';
@@ -70,20 +70,15 @@ static bool append_component(char name[NAME_BYTES], size_t *size, const char *pa
 	return true;
 }
 
-/* Makes the file's name in the scan's folder of an address in a file that may lie deeper. Returns
- * false if it cannot be in that folder. */
-static bool place_url(const struct vrml_parser *parser, const char *url, size_t length,
-		      char name[NAME_BYTES])
+/* Makes the file's name in the scan's folder of an address in a file `by`, which may lie deeper.
+ * Returns false if it cannot be in that folder. */
+static bool place_url(const char *by, const char *url, size_t length, char name[VRML_NAME_BYTES])
 {
-	const struct vrml_source *by = parser->scope->source;
-	size_t size = 0;
+	size_t size = parent_of(by, strlen(by));
 
 	if (url[0] == '/' || memmem(url, length, "://", 3))
 		return false;
-	if (by != parser->sources[0]) { /* whose path is not one in its folder */
-		size = parent_of(by->path, strlen(by->path));
-		memcpy(name, by->path, size);
-	}
+	memcpy(name, by, size);
 	for (const char *at = url; at < url + length;) {
 		const size_t rest = (size_t)(url + length - at), part = strcspn(at, "/");
 
@@ -95,17 +90,17 @@ static bool place_url(const struct vrml_parser *parser, const char *url, size_t 
 	return size > 0;
 }
 
-/* Opens an address, without what stands after #: beside the file that names it; else by the same
- * name in the scan's folder, where open_file looks for what other machines called "C:\\...". */
-static int open_url(struct vrml_parser *parser, const char *url, char name[NAME_BYTES])
+/* As vrml_open, of the first bytes of an address. by: the file that has it, as it was opened; "":
+ * the scene's own, whose path is not one in its folder. */
+static int open_url(const char *by, const char *url, size_t length,
+		    const struct vrml_options *options, char name[VRML_NAME_BYTES])
 {
-	const struct vrml_options *options = parser->options;
-	const size_t length = strcspn(url, "#");
 	int fd = -ENOENT;
 
-	if (length == 0 || length >= NAME_BYTES || !options || !options->open_file)
+	name[0] = '\0';
+	if (length == 0 || length >= VRML_NAME_BYTES || !options || !options->open_file)
 		return -ENOENT;
-	if (place_url(parser, url, length, name))
+	if (place_url(by, url, length, name))
 		fd = options->open_file(options->data, name);
 	if (fd < 0) {
 		memcpy(name, url, length);
@@ -113,6 +108,17 @@ static int open_url(struct vrml_parser *parser, const char *url, char name[NAME_
 		fd = options->open_file(options->data, name);
 	}
 	return fd;
+}
+
+int vrml_open(const struct vrml *scene, const struct vrml_node *node, const char *url,
+	      const struct vrml_options *options, char name[VRML_NAME_BYTES])
+{
+	const size_t length = strlen(url);
+
+	name[0] = '\0';
+	if (length >= VRML_NAME_BYTES && options && options->open_file)
+		return options->open_file(options->data, url);
+	return open_url(node->file == scene->path ? "" : node->file, url, length, options, name);
 }
 
 static struct vrml_source *find_source(const struct vrml_parser *parser, const char *name)
@@ -148,11 +154,13 @@ static int load_fd(struct vrml_parser *parser, struct vrml_source **out, int fd,
 int vrml_open_source(struct vrml_parser *parser, struct vrml_source **out,
 		     const struct vrml_value *urls, unsigned line)
 {
-	char name[NAME_BYTES] = "";
+	const struct vrml_source *by = parser->scope->source;
+	char name[VRML_NAME_BYTES] = "";
 	int fd = -ENOENT;
 
 	for (uint32_t i = 0; i < urls->count && fd < 0; i++)
-		fd = open_url(parser, urls->strings[i], name);
+		fd = open_url(by == parser->sources[0] ? "" : by->path, urls->strings[i],
+			      strcspn(urls->strings[i], "#"), parser->options, name);
 	if (fd < 0)
 		return VRML_FAIL(parser, fd, line,
 				 "it names %.100s, which is not beside it; copy it there",

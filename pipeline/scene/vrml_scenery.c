@@ -296,6 +296,7 @@ static bool is_visible(const struct scenery_material *material)
 static int get_picture(struct walk *walk, const struct vrml_node *look)
 {
 	const struct vrml_node *texture = look ? vrml_get_node(look, "texture") : NULL;
+	char opened[VRML_NAME_BYTES];
 	const struct vrml_value *urls;
 	int fd;
 
@@ -314,9 +315,7 @@ static int get_picture(struct walk *walk, const struct vrml_node *look)
 	urls = vrml_get(texture, "url");
 	if (!urls || urls->count == 0)
 		return 0;
-	fd = walk->options->open_file
-		     ? walk->options->open_file(walk->options->data, urls->strings[0])
-		     : -ENOENT;
+	fd = vrml_open(walk->scene, texture, urls->strings[0], walk->options, opened);
 	return scenery_image_read(&walk->picture, fd, urls->strings[0], texture->file,
 				  texture->line, walk->warnings);
 }

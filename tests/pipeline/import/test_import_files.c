@@ -264,6 +264,30 @@ static void pictures_from_elsewhere_are_not_read(void **state)
 	}
 }
 
+/* A file that a scene names by Inline may lie in a folder with pictures of its own. */
+static void a_picture_lies_beside_the_file_of_the_scene_that_names_it(void **state)
+{
+	struct import_report report;
+	struct diagnostics diagnostics;
+	struct mesh mesh;
+	char from[PATH_MAX], to[PATH_MAX];
+	(void)state;
+
+	put_pictures();
+	at(from, "keys/picture.png");
+	at(to, "scans/deep/own.png");
+	CHECK(link(from, to) == 0);
+	put("scans/site.wrl", "#VRML V2.0 utf8\nInline { url \"deep/wall.wrl\" }");
+	put("scans/deep/wall.wrl",
+	    "#VRML V2.0 utf8\nShape { appearance Appearance { texture ImageTexture { "
+	    "url \"own.png\" } } geometry Box {} }");
+	if (import("scans/site.wrl", &mesh, &report, &diagnostics) < 0)
+		fail_msg("%s", diagnostics.first.text);
+	if (report.textures != 1)
+		fail_msg("%s", report.warning.first.text);
+	mesh_finish(&mesh);
+}
+
 /* As glTF writes them. A name that has the % itself comes first. */
 static void names_are_decoded_if_they_are_not_there_as_written(void **state)
 {
@@ -482,6 +506,7 @@ int main(void)
 		cmocka_unit_test(reads_a_buffer_below_and_one_that_was_copied_beside),
 		cmocka_unit_test(a_missing_file_is_told_as_missing),
 		cmocka_unit_test(pictures_from_elsewhere_are_not_read),
+		cmocka_unit_test(a_picture_lies_beside_the_file_of_the_scene_that_names_it),
 		cmocka_unit_test(names_are_decoded_if_they_are_not_there_as_written),
 		cmocka_unit_test(the_case_of_letters_decides_only_where_it_must),
 		cmocka_unit_test(a_file_counts_once_however_often_it_is_named),

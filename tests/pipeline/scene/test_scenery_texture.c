@@ -272,6 +272,39 @@ static void an_image_texture_takes_the_place_of_the_colour(void **state)
 	scenery_finish(&s);
 }
 
+/* Gives a scene in a folder, and the PNG in data beside that. */
+static int open_in_folder(void *data, const char *name)
+{
+	static const char wall[] = SQUARE("ImageTexture { url \"a b.png\" }");
+	int fd;
+
+	if (strncmp(name, "walls/", 6) != 0)
+		return -ENOENT;
+	if (strcmp(name + 6, "east.wrl") != 0)
+		return open_picture(data, name + 6);
+	fd = memfd_create("wall", MFD_CLOEXEC);
+	CHECK(fd >= 0 && write(fd, wall, sizeof(wall) - 1) == (ssize_t)sizeof(wall) - 1);
+	CHECK(lseek(fd, 0, SEEK_SET) == 0);
+	return fd;
+}
+
+static void a_picture_lies_beside_the_file_that_names_it(void **state)
+{
+	struct buffer png = make_png();
+	const struct vrml_options options = { .open_file = open_in_folder, .data = &png };
+	struct diagnostics diagnostics = { 0 }, warnings = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(little_vrml_make(&s, "#VRML V2.0 utf8\nInline { url \"walls/east.wrl\" }", &options,
+			       NULL, 0, &diagnostics, &warnings) == 0);
+	if (warnings.count > 0)
+		fail_msg("%s", warnings.first.text);
+	CHECK(shows_the_picture(&s));
+	scenery_finish(&s);
+	buffer_finish(&png);
+}
+
 static void a_picture_that_cannot_be_read_is_a_warning(void **state)
 {
 	static const char *const cases[][2] = {
@@ -498,6 +531,7 @@ int main(void)
 		cmocka_unit_test(all_pictures_stay_within_their_budget),
 		cmocka_unit_test(a_resized_picture_keeps_its_places),
 		cmocka_unit_test(an_image_texture_takes_the_place_of_the_colour),
+		cmocka_unit_test(a_picture_lies_beside_the_file_that_names_it),
 		cmocka_unit_test(a_picture_that_cannot_be_read_is_a_warning),
 		cmocka_unit_test(a_texture_transform_of_vrml_moves_the_picture_too),
 		cmocka_unit_test(a_base_colour_texture_is_shown),
