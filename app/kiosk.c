@@ -156,13 +156,21 @@ static int start_touch(struct kiosk *kiosk)
 
 /* ---- start: state and releases */
 
+/* Of what is written on the panel. A profile's width is meant as it is. */
+static float words_px_per_mm(const struct kiosk *kiosk)
+{
+	const float px_per_mm = kiosk->viewport.px_per_mm;
+
+	return kiosk->profile.width_mm > 0 ? px_per_mm : theme_legible_px_per_mm(px_per_mm);
+}
+
 static struct sessions_options sessions_options(struct kiosk *kiosk)
 {
 	return (struct sessions_options){
 		.scene = scene_settings(&kiosk->profile, kiosk->options.mode),
 		.view = { .width_px = viewport_width_px(&kiosk->viewport),
 			  .height_px = viewport_height_px(&kiosk->viewport),
-			  .px_per_mm = kiosk->viewport.px_per_mm,
+			  .px_per_mm = words_px_per_mm(kiosk),
 			  .language = kiosk->options.language,
 			  .sound = kiosk->options.loudness > 0 },
 		.download = kiosk->options.download,

@@ -151,11 +151,16 @@ int theme_text_px(const struct theme *theme, float mm)
 	return theme_px(theme, mm * theme->text_scale);
 }
 
+float theme_legible_px_per_mm(float px_per_mm)
+{
+	return fmaxf(px_per_mm, 3.2f);
+}
+
 float theme_guess_px_per_mm(int width_px, int height_px)
 {
 	int shorter = width_px < height_px ? width_px : height_px;
 
-	return fmaxf(3.2f, (float)shorter / 210.0f);
+	return theme_legible_px_per_mm((float)shorter / 210.0f);
 }
 
 void theme_set_source(cairo_t *context, struct colour colour, double alpha)

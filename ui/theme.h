@@ -1,6 +1,6 @@
 /* One look for everything. Sizes are in millimetres of glass, so that a touch target has the same
- * size for a finger on a 10-inch panel and on a 55-inch one. There are few type sizes and few
- * colours: stone, ink and one accent. docs/ui.md explains why. */
+ * size for a finger on a 10-inch panel and on a 55-inch one, if the latter has pixels enough. There
+ * are few type sizes and few colours: stone, ink and one accent. docs/ui.md explains why. */
 #ifndef GOPURA_UI_THEME_H
 #define GOPURA_UI_THEME_H
 
@@ -67,8 +67,11 @@ bool theme_is_right_to_left(const struct theme *theme);
 
 int theme_px(const struct theme *theme, float mm);      /* millimetres to pixels; at least 1 */
 int theme_text_px(const struct theme *theme, float mm); /* for sizes that grow with type */
+/* Returns px_per_mm, or more where pixels are so large that the smallest letters would have too
+ * few: on a panel of 55 inches and 1920 pixels they would have 6. */
+float theme_legible_px_per_mm(float px_per_mm);
 /* Guesses the pixels per millimetre of a panel from its size in pixels: its shorter side is taken
- * for 210 mm; never under 3.2. */
+ * for 210 mm; never too few for letters. */
 float theme_guess_px_per_mm(int width_px, int height_px);
 
 /* Sets the source colour of a context. */

@@ -66,6 +66,25 @@ static void black_on_white_has_the_contrast_of_the_standard(void **state)
 		   4.478) < 0.001); /* the grey that famously just fails */
 }
 
+/* A panel of 55 inches with 1920 pixels, and one of 24 inches. */
+static void the_smallest_letters_have_pixels_on_any_panel(void **state)
+{
+	static const float widths_mm[] = { 1210, 530 };
+
+	(void)state;
+	for (size_t i = 0; i < ARRAY_COUNT(widths_mm); i++) {
+		const float px_per_mm = theme_legible_px_per_mm(1920 / widths_mm[i]);
+		struct theme theme;
+
+		CHECK(theme_init(&theme, px_per_mm, "en") == 0);
+		for (int style = 0; style < TEXT_STYLE_COUNT; style++)
+			CHECK(theme_style_px(&theme, (enum text_style)style) >= 12);
+		CHECK(px_per_mm >= 1920 / widths_mm[i] && px_per_mm < 4);
+		theme_finish(&theme);
+	}
+	CHECK(theme_legible_px_per_mm(6) == 6);
+}
+
 static void every_text_stands_out_from_its_ground(void **state)
 {
 	const struct {
@@ -506,6 +525,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(black_on_white_has_the_contrast_of_the_standard),
 		cmocka_unit_test(every_text_stands_out_from_its_ground),
+		cmocka_unit_test(the_smallest_letters_have_pixels_on_any_panel),
 		cmocka_unit_test(every_target_is_9_mm_and_in_reach_mode_low),
 		cmocka_unit_test(keys_are_fingers_wide_in_every_mode_and_language),
 		cmocka_unit_test(the_bar_stays_where_it_is),
