@@ -176,6 +176,11 @@ int history_open(struct history **out, const char *path, struct diagnostics *dia
 	set_up_library();
 	if (access(path, F_OK) < 0) {
 		rc = make(history, path, diagnostics);
+	} else if (access(path, R_OK | W_OK | X_OK) < 0) {
+		/* libgit2 would find nothing there, as in one that is damaged. */
+		rc = diagnostics_add(diagnostics, -errno, path, 0,
+				     "%s: give the history to the user who runs this program",
+				     strerror(errno));
 	} else {
 		drop_locks(path);
 		rc = from_git(git_repository_open_bare(&history->repository, path), path);

@@ -438,6 +438,43 @@ static void a_history_that_cannot_be_read_is_not_put_aside(void **state)
 	documents_close(documents);
 }
 
+/* As a backup that root brought back. */
+static void a_history_of_another_user_is_not_put_aside(void **state)
+{
+	struct documents *documents = opened();
+	char command[3 * PATH_MAX];
+	int status;
+	pid_t child;
+
+	(void)state;
+	CHECK(save(documents, "parts.json", "words", "", "ana") == 0);
+	documents_close(documents);
+	snprintf(command, sizeof(command),
+		 "cd '%s' && chmod 0 .curator/history.git && { [ $(id -u) != 0 ] || chown -R 65534 "
+		 ". && chown 0 .curator/history.git; }",
+		 folder);
+	CHECK(system(command) == 0);
+	child = fork();
+	if (child == 0) {
+		struct diagnostics diagnostics = { 0 };
+
+		log_set_level((enum log_level) - 1);
+		if (geteuid() == 0 && setuid(65534) < 0)
+			_exit(1);
+		_exit(documents_open(&documents, folder, &diagnostics) == -EACCES &&
+				      strstr(diagnostics.first.text,
+					     "history.git: Permission denied")
+			      ? 0
+			      : 2);
+	}
+	CHECK(child > 0 && waitpid(child, &status, 0) == child && status == 0);
+	CHECK(chmod(at(".curator/history.git"), 0700) == 0);
+	documents = opened();
+	CHECK(has(documents, "parts.json", "words"));
+	CHECK(save(documents, "parts.json", "more", NULL, "ana") == 0);
+	documents_close(documents);
+}
+
 static void a_full_disk_is_called_so(void **state)
 {
 	struct documents *documents = opened();
@@ -485,6 +522,7 @@ int main(void)
 		TEST(a_damaged_history_is_put_aside),
 		TEST(a_history_without_its_objects_is_put_aside),
 		TEST(a_history_that_cannot_be_read_is_not_put_aside),
+		TEST(a_history_of_another_user_is_not_put_aside),
 		TEST(a_full_disk_is_called_so),
 		TEST(another_process_cannot_open_the_folder),
 	};
