@@ -475,6 +475,41 @@ static void a_history_of_another_user_is_not_put_aside(void **state)
 	documents_close(documents);
 }
 
+/* docs/curator.md lets an administrator pack the history while the program runs. */
+static void a_history_that_git_packs_meanwhile_goes_on(void **state)
+{
+	struct documents *documents;
+	struct history_version versions[20];
+	char command[PATH_MAX + 200], text[32];
+	struct buffer old;
+
+	(void)state;
+	if (system("command -v git >/dev/null") != 0)
+		skip();
+	documents = opened();
+	for (int n = 0; n < 5; n++) {
+		snprintf(text, sizeof(text), "text %d", n);
+		CHECK(save(documents, "parts.json", text, NULL, "ana") == 0);
+	}
+	snprintf(
+		command, sizeof(command),
+		"cd '%s'/.curator && git --git-dir=history.git gc --quiet --prune=now && "
+		"[ -z \"$(find history.git/objects -type f ! -path '*/pack/*' ! -path '*/info/*')\" ]",
+		folder);
+	CHECK(system(command) == 0);
+	CHECK(save(documents, "parts.json", "after it", NULL, "petra") == 0);
+	CHECK(versions_of(documents, "parts.json", versions) == 6);
+	CHECK(strcmp(versions[0].author, "petra") == 0 && strcmp(versions[5].author, "ana") == 0);
+	buffer_init(&old, 100);
+	CHECK(documents_read_version(documents, "parts.json", versions[5].id, &old, NULL) == 0);
+	CHECK(old.size == 6 && memcmp(old.data, "text 0", 6) == 0);
+	buffer_finish(&old);
+	documents_close(documents);
+	documents = opened();
+	CHECK(has(documents, "parts.json", "after it"));
+	documents_close(documents);
+}
+
 static void a_full_disk_is_called_so(void **state)
 {
 	struct documents *documents = opened();
@@ -523,6 +558,7 @@ int main(void)
 		TEST(a_history_without_its_objects_is_put_aside),
 		TEST(a_history_that_cannot_be_read_is_not_put_aside),
 		TEST(a_history_of_another_user_is_not_put_aside),
+		TEST(a_history_that_git_packs_meanwhile_goes_on),
 		TEST(a_full_disk_is_called_so),
 		TEST(another_process_cannot_open_the_folder),
 	};
