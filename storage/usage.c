@@ -322,14 +322,22 @@ void usage_add(struct usage *usage, enum usage_kind kind, const char *what, cons
 		usage->pending[usage->pending_count++] = entry;
 }
 
+/* Appends all lines or, on failure, none: they are appended again then. */
 static int append(const char *path, struct bytes lines)
 {
-	int rc = 0, fd = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+	int rc, fd = open(path, O_WRONLY | O_APPEND | O_CLOEXEC);
+	struct stat before;
 
 	if (fd < 0)
 		return -errno;
-	if (write(fd, lines.data, lines.size) != (ssize_t)lines.size)
-		rc = errno ? -errno : -EIO;
+	if (fstat(fd, &before) < 0) {
+		rc = -errno;
+	} else {
+		rc = bytes_write_to(fd, lines);
+		if (rc < 0 && ftruncate(fd, before.st_size) < 0)
+			log_debug("storage", "%s: %s; a part of it is counted twice", path,
+				  strerror(errno));
+	}
 	close(fd);
 	return rc;
 }

@@ -1,9 +1,11 @@
 /* Counts of what visitors look at. */
 #include "storage/usage.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -199,6 +201,36 @@ static void the_copy_says_the_same_to_everybody(void **state)
 	usage_destroy(usage);
 }
 
+/* A file that may have so many bytes; what is more of a write does not happen. */
+static void limit(rlim_t bytes)
+{
+	struct rlimit size;
+
+	CHECK(getrlimit(RLIMIT_FSIZE, &size) == 0);
+	size.rlim_cur = bytes;
+	CHECK(setrlimit(RLIMIT_FSIZE, &size) == 0);
+}
+
+static void counts_nothing_twice_where_the_disk_takes_a_part(void **state)
+{
+	static const char hour[] = "2026-11-29T12,part,gate,en,1\n";
+	struct usage *usage = begin(noon);
+
+	(void)state;
+	signal(SIGXFSZ, SIG_IGN);
+	usage_add(usage, USAGE_PART, "gate", "en", noon);
+	usage_add(usage, USAGE_PART, "moat", "en", noon);
+	usage_add(usage, USAGE_PART, "wall", "en", noon);
+	limit(sizeof(HEADER) - 1 + 2 * (sizeof(hour) - 1) + 9); /* two lines, and a third begins */
+	usage_write(usage);
+	limit(RLIM_INFINITY);
+	usage_destroy(usage);
+	usage_destroy(begin(noon));
+	says(path, HEADER "2026-11-29T12,part,gate,en,1\n"
+			  "2026-11-29T12,part,moat,en,1\n"
+			  "2026-11-29T12,part,wall,en,1\n");
+}
+
 static void goes_on_without_a_disk(void **state)
 {
 	struct usage *usage;
@@ -227,6 +259,7 @@ int main(void)
 		FILED(keeps_the_newest_of_a_file_that_is_too_large),
 		FILED(leaves_out_what_is_no_count),
 		FILED(the_copy_says_the_same_to_everybody),
+		FILED(counts_nothing_twice_where_the_disk_takes_a_part),
 		FILED(goes_on_without_a_disk),
 	};
 
