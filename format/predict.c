@@ -15,6 +15,14 @@ static void triangle_cross(int64_t out[3], const int32_t *a, const int32_t *b, c
 		out[i] = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
 }
 
+/* Thousands of triangles that are as large as a large site may meet at a vertex: the sum wraps
+ * around, which both directions do alike. */
+static void add_cross(int64_t sum[3], const int64_t cross[3])
+{
+	for (int i = 0; i < 3; i++)
+		sum[i] = (int64_t)((uint64_t)sum[i] + (uint64_t)cross[i]);
+}
+
 static int64_t divide_rounded(int64_t value, int64_t by)
 {
 	return value >= 0 ? (value + by / 2) / by : -((-value + by / 2) / by);
@@ -22,7 +30,7 @@ static int64_t divide_rounded(int64_t value, int64_t by)
 
 static int64_t magnitude(int64_t value)
 {
-	return value < 0 ? -value : value;
+	return value < 0 ? -(value + (value == INT64_MIN)) : value;
 }
 
 /* 127 times the length must fit in 64 bits; only the sums of large triangles on a large site are
@@ -54,8 +62,7 @@ void predict_add_cross(int64_t sum[3], const int32_t *a, const int32_t *b, const
 	int64_t cross[3];
 
 	triangle_cross(cross, a, b, c);
-	for (int i = 0; i < 3; i++)
-		sum[i] += cross[i];
+	add_cross(sum, cross);
 }
 
 void predict_add_normals(int64_t (*sums)[3], const struct patch_vertex *vertices,
@@ -70,7 +77,6 @@ void predict_add_normals(int64_t (*sums)[3], const struct patch_vertex *vertices
 		triangle_cross(cross, vertices[corners[0]].position, vertices[corners[1]].position,
 			       vertices[corners[2]].position);
 		for (int c = 0; c < 3; c++)
-			for (int i = 0; i < 3; i++)
-				sums[corners[c]][i] += cross[i];
+			add_cross(sums[corners[c]], cross);
 	}
 }

@@ -459,6 +459,27 @@ static void places_of_a_large_site_come_back_and_cost_thirteen_bytes_a_group(voi
 	patch_mesh_finish(&patches[0]);
 }
 
+/* The sum of their normals does not fit into 64 bits. */
+static void gives_back_thousands_of_large_triangles_at_a_vertex(void **state)
+{
+	const int32_t far = LATTICE_PLACES_MAX - 1;
+	struct patch_vertex vertices[3] = { { .position = { 0, 0, 0 } },
+					    { .position = { far, 0, 0 } },
+					    { .position = { 0, far, 0 } } };
+	uint16_t indices[3 * PATCH_TRIANGLES_MAX];
+	struct patch_mesh patches[9];
+
+	(void)state;
+	for (uint32_t i = 0; i < ARRAY_COUNT(indices); i++)
+		indices[i] = (uint16_t)(i % 3);
+	for (uint32_t p = 0; p < ARRAY_COUNT(patches); p++)
+		patches[p] = (struct patch_mesh){ .vertices = vertices,
+						  .indices = indices,
+						  .vertex_count = 3,
+						  .triangle_count = PATCH_TRIANGLES_MAX };
+	round_trip(patches, ARRAY_COUNT(patches));
+}
+
 static void refuses_places_that_are_none(void **state)
 {
 	static const int32_t places[] = { -1, LATTICE_PLACES_MAX, INT32_MAX, INT32_MIN };
@@ -518,6 +539,7 @@ int main(void)
 		cmocka_unit_test(survives_every_flipped_bit),
 		cmocka_unit_test(survives_bytes_at_random),
 		cmocka_unit_test(places_of_a_large_site_come_back_and_cost_thirteen_bytes_a_group),
+		cmocka_unit_test(gives_back_thousands_of_large_triangles_at_a_vertex),
 		cmocka_unit_test(refuses_places_that_are_none),
 		cmocka_unit_test(refuses_a_base_that_leads_out_of_the_lattice),
 		cmocka_unit_test(rounds_components_of_normals),
