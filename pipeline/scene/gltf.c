@@ -390,9 +390,9 @@ int gltf_picture(struct picture *out, const struct gltf *gltf, const cJSON *text
 			out,
 			view_bytes(gltf, gltf_item(gltf, GLTF_VIEWS, image, "bufferView", NULL)),
 			name, gltf->path, line, warnings);
-	if (!uri_decode(name, sizeof(name), uri))
-		return 0;
-	rc = gltf->options.open_file ? gltf->options.open_file(gltf->options.data, name) : -ENOENT;
+	rc = !uri_decode(name, sizeof(name), uri) ? -ENAMETOOLONG
+	     : gltf->options.open_file ? gltf->options.open_file(gltf->options.data, name)
+				       : -ENOENT;
 	return scenery_image_read(out, rc, name, gltf->path, line, warnings);
 }
 

@@ -84,7 +84,7 @@ float gltf_number(const struct gltf_numbers *numbers, uint32_t element, uint32_t
 uint32_t gltf_index(const struct gltf_numbers *numbers, uint32_t element);
 
 /* Reads the picture of a texture. Returns 1; 0, with a diagnostic in warnings: there is none that
- * can be read; -ENOMEM. */
+ * can be read; -ENOMEM, or the other errors of scenery_image_read. */
 must_check int gltf_picture(struct picture *out, const struct gltf *gltf,
 			    const struct cJSON *texture, struct diagnostics *warnings);
 

@@ -4,6 +4,8 @@
 #include <errno.h>
 #include <string.h>
 
+#include "base/transient.h"
+
 static int leave_out(struct diagnostics *warnings, const char *file, unsigned line,
 		     const char *name, const char *why)
 {
@@ -40,6 +42,10 @@ int scenery_image_read(struct picture *out, int fd, const char *name, const char
 	rc = buffer_read_fd(&bytes, fd);
 	if (rc == 0)
 		rc = scenery_image_decode(out, buffer_bytes(&bytes), name, file, line, warnings);
+	else if (rc != -ENOMEM && is_transient(rc))
+		diagnostics_add(warnings, rc, file, line,
+				"the picture %.200s cannot be read: %s; try again", name,
+				strerror(-rc));
 	else if (rc != -ENOMEM)
 		rc = leave_out(warnings, file, line, name,
 			       rc == -EFBIG ? "it is over 64 MiB; make it smaller" : strerror(-rc));

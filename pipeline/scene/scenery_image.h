@@ -11,7 +11,8 @@ enum { SCENERY_IMAGE_BYTES_MAX = 64 << 20 };
  * warnings: it is no such picture, or over PICTURE_PAGE_SIDE_MOST_PX wide or high; -ENOMEM. */
 must_check int scenery_image_decode(struct picture *out, struct bytes bytes, const char *name,
 				    const char *file, unsigned line, struct diagnostics *warnings);
-/* The same for a descriptor, which is closed; negative: why it could not be opened. */
+/* The same for a descriptor, which is closed; negative: why it could not be opened. What may be
+ * read at the next try (base/transient.h) is an error in warnings, and is returned. */
 must_check int scenery_image_read(struct picture *out, int fd, const char *name, const char *file,
 				  unsigned line, struct diagnostics *warnings);
 

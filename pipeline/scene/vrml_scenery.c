@@ -292,7 +292,7 @@ static bool is_visible(const struct scenery_material *material)
 /* ---- pictures */
 
 /* Reads the picture of an Appearance: the first that ImageTexture's url names. Returns whether
- * there is one, or -ENOMEM. */
+ * there is one, or a negative errno, with a diagnostic but for -ENOMEM. */
 static int get_picture(struct walk *walk, const struct vrml_node *look)
 {
 	const struct vrml_node *texture = look ? vrml_get_node(look, "texture") : NULL;
@@ -372,7 +372,7 @@ static int add_surface(struct walk *walk, const struct vrml_node *shape, uint32_
 	soup.keeps_sources = bender != NULL;
 	has_picture = get_picture(walk, look);
 	if (has_picture < 0)
-		return fail(walk, has_picture, shape);
+		return has_picture == -ENOMEM ? fail(walk, has_picture, shape) : has_picture;
 	memcpy(soup.place, place, sizeof(soup.place));
 	rc = vrml_shape_add(&soup, geometry, rgb, is_mirrored, walk->diagnostics);
 	if (rc == 0)

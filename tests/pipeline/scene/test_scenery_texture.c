@@ -328,6 +328,28 @@ static void a_picture_that_cannot_be_read_is_a_warning(void **state)
 	}
 }
 
+/* Where a disk fails: it may be read at the next try. */
+static int open_what_fails(void *data, const char *name)
+{
+	(void)data;
+	(void)name;
+	return open("/proc/self/mem", O_RDONLY | O_CLOEXEC); /* nothing is mapped at 0 */
+}
+
+static void a_picture_that_cannot_be_read_now_is_an_error(void **state)
+{
+	const struct vrml_options options = { .open_file = open_what_fails };
+	struct diagnostics diagnostics = { 0 };
+	struct scenery s;
+
+	(void)state;
+	CHECK(little_vrml_make(&s, SQUARE("ImageTexture { url \"a b.png\" }"), &options, NULL, 0,
+			       &diagnostics, &diagnostics) == -EIO);
+	CHECK(diagnostics.error_count == 1);
+	if (!strstr(diagnostics.first.text, "a.wrl:4: the picture a b.png cannot be read:"))
+		fail_msg("%s", diagnostics.first.text);
+}
+
 /* By the formula of VRML97, 6.49: with a quarter turn about its middle the picture is seen turned
  * clockwise; half a scale shows its lower left quarter. */
 static void a_texture_transform_of_vrml_moves_the_picture_too(void **state)
@@ -410,6 +432,20 @@ static void make_gltf(struct scenery *out, const char *image, const char *materi
 	gltf_finish(&gltf);
 	free(base64);
 	buffer_finish(&png);
+}
+
+static void a_picture_whose_name_is_too_long_is_a_warning(void **state)
+{
+	struct diagnostics warnings = { 0 };
+	char image[1024];
+	struct scenery s;
+
+	(void)state;
+	snprintf(image, sizeof(image), "{\"uri\": \"%0900d.png\"}", 7);
+	make_gltf(&s, image, PAINTED, "", &warnings);
+	CHECK(warnings.count == 1 &&
+	      strstr(warnings.first.text, "is left out: File name too long"));
+	scenery_finish(&s);
 }
 
 static void a_base_colour_texture_is_shown(void **state)
@@ -533,8 +569,10 @@ int main(void)
 		cmocka_unit_test(an_image_texture_takes_the_place_of_the_colour),
 		cmocka_unit_test(a_picture_lies_beside_the_file_that_names_it),
 		cmocka_unit_test(a_picture_that_cannot_be_read_is_a_warning),
+		cmocka_unit_test(a_picture_that_cannot_be_read_now_is_an_error),
 		cmocka_unit_test(a_texture_transform_of_vrml_moves_the_picture_too),
 		cmocka_unit_test(a_base_colour_texture_is_shown),
+		cmocka_unit_test(a_picture_whose_name_is_too_long_is_a_warning),
 		cmocka_unit_test(a_texture_transform_moves_the_picture),
 		cmocka_unit_test(a_normal_map_lies_where_the_picture_does),
 		cmocka_unit_test(what_bends_keeps_its_picture),
