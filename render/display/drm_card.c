@@ -221,22 +221,72 @@ static uint32_t primary_plane(int fd, int crtc_index)
 	return found;
 }
 
-static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint32_t crtc_bits)
+/* Takes the CRTC of that number, with its primary plane. Returns whether it can be set atomically.
+ */
+static bool take_crtc(struct drm_card *card, const drmModeRes *resources, int number)
 {
+	card->crtc = resources->crtcs[number];
+	card->plane = card->atomic ? primary_plane(card->fd, number) : 0;
+	return card->plane != 0 && find_properties(card);
+}
+
+/* Asks the driver whether the CRTC can drive the connector with the mode. Some drivers do not allow
+ * one without a picture, and always say no. */
+static bool can_set_mode(const struct drm_card *card)
+{
+	const struct drm_card_properties *p = &card->properties;
+	drmModeAtomicReq *request = drmModeAtomicAlloc();
+	uint32_t mode = 0;
+	bool can = request &&
+		   drmModeCreatePropertyBlob(card->fd, &card->mode, sizeof(card->mode), &mode) == 0;
+	const uint64_t values[][3] = {
+		{ card->connector, p->connector_crtc, card->crtc },
+		{ card->crtc, p->crtc_mode, mode },
+		{ card->crtc, p->crtc_active, 1 },
+		{ card->plane, p->plane_fb, 0 }, /* that of another program may not fit */
+		{ card->plane, p->plane_crtc, 0 },
+	};
+
+	for (size_t i = 0; can && i < ARRAY_COUNT(values); i++)
+		can = drmModeAtomicAddProperty(request, (uint32_t)values[i][0],
+					       (uint32_t)values[i][1], values[i][2]) >= 0;
+	can = can && drmModeAtomicCommit(card->fd, request,
+					 DRM_MODE_ATOMIC_TEST_ONLY | DRM_MODE_ATOMIC_ALLOW_MODESET,
+					 NULL) == 0;
+	if (mode)
+		drmModeDestroyPropertyBlob(card->fd, mode);
+	drmModeAtomicFree(request);
+	return can;
+}
+
+/* Returns the number of the first CRTC that can drive the connector with the mode: on some boards
+ * not all can do the largest. If no driver says so, the first that may be connected; -1: none. */
+static int find_crtc(struct drm_card *card, const drmModeRes *resources, uint32_t crtc_bits)
+{
+	int first = -1;
+
 	for (int i = 0; i < resources->count_crtcs; i++) {
 		if (!(crtc_bits & 1u << i))
 			continue;
-		card->crtc = resources->crtcs[i];
-		card->crtc_before = drmModeGetCrtc(card->fd, card->crtc);
-		if (card->atomic) {
-			card->plane = primary_plane(card->fd, i);
-			card->atomic = card->plane != 0 && find_properties(card);
-		}
-		if (card->atomic)
-			read_modifiers(card);
-		return 0;
+		if (take_crtc(card, resources, i) && can_set_mode(card))
+			return i;
+		if (first < 0)
+			first = i;
 	}
-	return -ENODEV;
+	return first;
+}
+
+static int choose_crtc(struct drm_card *card, const drmModeRes *resources, uint32_t crtc_bits)
+{
+	const int number = find_crtc(card, resources, crtc_bits);
+
+	if (number < 0)
+		return -ENODEV;
+	card->atomic = take_crtc(card, resources, number);
+	card->crtc_before = drmModeGetCrtc(card->fd, card->crtc);
+	if (card->atomic)
+		read_modifiers(card);
+	return 0;
 }
 
 static int open_card(struct drm_card *card, const char *device, enum presence least,

@@ -30,6 +30,15 @@ static struct played_card {
 	int width_mm;
 } cards[CARDS], *card_of[FDS_MAX];
 
+/* Of each card. What a CRTC can do is asked for atomically alone. */
+enum { CRTCS = 2, FIRST_CRTC = 30, FIRST_PLANE = 40, CONNECTOR = 7, ENCODER = 9 };
+static struct {
+	bool are_atomic;
+	uint32_t too_small;        /* bit mask of those that cannot do the mode */
+	uint32_t asked, with_blob; /* of the last request: CRTC, and its mode */
+	uint32_t blobs;
+} crtcs;
+
 int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...);
 
@@ -85,8 +94,8 @@ int drmSetClientCap(int fd, uint64_t capability, uint64_t value)
 {
 	(void)fd, (void)value;
 	opens += capability == DRM_CLIENT_CAP_UNIVERSAL_PLANES;
-	return capability == DRM_CLIENT_CAP_ATOMIC ? -EINVAL
-						   : 0; /* the old way needs no properties */
+	/* the old way needs no properties */
+	return capability == DRM_CLIENT_CAP_ATOMIC && !crtcs.are_atomic ? -EINVAL : 0;
 }
 
 int drmIsKMS(int fd)
@@ -108,7 +117,9 @@ int drmSetMaster(int fd)
 	return -1;
 }
 
-static uint32_t connector_id = 7, crtc_id = 8, encoder_id = 9;
+static uint32_t connector_id = CONNECTOR, encoder_id = ENCODER;
+static uint32_t crtc_ids[CRTCS] = { FIRST_CRTC, FIRST_CRTC + 1 };
+static uint32_t plane_ids[CRTCS] = { FIRST_PLANE, FIRST_PLANE + 1 };
 
 drmModeResPtr drmModeGetResources(int fd)
 {
@@ -120,8 +131,8 @@ drmModeResPtr drmModeGetResources(int fd)
 	}
 	resources = (drmModeRes){ .count_connectors = 1,
 				  .connectors = &connector_id,
-				  .count_crtcs = 1,
-				  .crtcs = &crtc_id };
+				  .count_crtcs = CRTCS,
+				  .crtcs = crtc_ids };
 	return &resources;
 }
 
@@ -146,7 +157,7 @@ drmModeEncoderPtr drmModeGetEncoder(int fd, uint32_t id)
 	static drmModeEncoder encoder;
 
 	(void)fd;
-	encoder = (drmModeEncoder){ .encoder_id = id, .possible_crtcs = 1 };
+	encoder = (drmModeEncoder){ .encoder_id = id, .possible_crtcs = 3 };
 	return &encoder;
 }
 
@@ -156,10 +167,119 @@ drmModeCrtcPtr drmModeGetCrtc(int fd, uint32_t id)
 	return NULL;
 }
 
+/* Each object has all of them. */
+static const char *const property_names[] = { "MODE_ID", "type",   "ACTIVE", "CRTC_ID", "FB_ID",
+					      "SRC_X",   "SRC_Y",  "SRC_W",  "SRC_H",   "CRTC_X",
+					      "CRTC_Y",  "CRTC_W", "CRTC_H" };
+enum { MODE_ID, TYPE };
+
 drmModeObjectPropertiesPtr drmModeObjectGetProperties(int fd, uint32_t id, uint32_t type)
 {
+	static uint32_t ids[ARRAY_COUNT(property_names)];
+	static uint64_t values[ARRAY_COUNT(property_names)];
+	static drmModeObjectProperties all = { .count_props = ARRAY_COUNT(property_names),
+					       .props = ids,
+					       .prop_values = values };
+
 	(void)fd, (void)id, (void)type;
-	return NULL;
+	for (uint32_t i = 0; i < ARRAY_COUNT(property_names); i++)
+		ids[i] = i + 1;
+	values[TYPE] = DRM_PLANE_TYPE_PRIMARY;
+	return crtcs.are_atomic ? &all : NULL;
+}
+
+drmModePropertyPtr drmModeGetProperty(int fd, uint32_t id)
+{
+	static drmModePropertyRes property;
+
+	(void)fd;
+	property.prop_id = id;
+	snprintf(property.name, sizeof(property.name), "%s", property_names[id - 1]);
+	return &property;
+}
+
+void drmModeFreeProperty(drmModePropertyPtr property)
+{
+	(void)property;
+}
+
+void drmModeFreeObjectProperties(drmModeObjectPropertiesPtr all)
+{
+	(void)all;
+}
+
+drmModePlaneResPtr drmModeGetPlaneResources(int fd)
+{
+	static drmModePlaneRes planes = { .count_planes = CRTCS, .planes = plane_ids };
+
+	(void)fd;
+	return &planes;
+}
+
+drmModePlanePtr drmModeGetPlane(int fd, uint32_t id)
+{
+	static drmModePlane plane;
+
+	(void)fd;
+	plane = (drmModePlane){ .plane_id = id, .possible_crtcs = 1u << (id - FIRST_PLANE) };
+	return &plane;
+}
+
+void drmModeFreePlane(drmModePlanePtr plane)
+{
+	(void)plane;
+}
+
+void drmModeFreePlaneResources(drmModePlaneResPtr planes)
+{
+	(void)planes;
+}
+
+drmModeAtomicReqPtr drmModeAtomicAlloc(void)
+{
+	crtcs.asked = crtcs.with_blob = 0;
+	return (drmModeAtomicReqPtr)&crtcs;
+}
+
+void drmModeAtomicFree(drmModeAtomicReqPtr request)
+{
+	CHECK(request == (drmModeAtomicReqPtr)&crtcs);
+}
+
+int drmModeCreatePropertyBlob(int fd, const void *data, size_t size, uint32_t *id)
+{
+	(void)fd, (void)data;
+	CHECK(size == sizeof(drmModeModeInfo));
+	crtcs.blobs++;
+	*id = 99;
+	return 0;
+}
+
+int drmModeDestroyPropertyBlob(int fd, uint32_t id)
+{
+	(void)fd;
+	CHECK(id == 99);
+	crtcs.blobs--;
+	return 0;
+}
+
+int drmModeAtomicAddProperty(drmModeAtomicReqPtr request, uint32_t object, uint32_t property,
+			     uint64_t value)
+{
+	CHECK(request == (drmModeAtomicReqPtr)&crtcs && property > 0);
+	if (object == CONNECTOR)
+		crtcs.asked = (uint32_t)value;
+	else if (object == crtcs.asked && property == MODE_ID + 1)
+		crtcs.with_blob = (uint32_t)value;
+	return 1;
+}
+
+int drmModeAtomicCommit(int fd, drmModeAtomicReqPtr request, uint32_t flags, void *data)
+{
+	(void)fd, (void)request, (void)data;
+	CHECK(flags == (DRM_MODE_ATOMIC_TEST_ONLY | DRM_MODE_ATOMIC_ALLOW_MODESET));
+	CHECK(crtcs.with_blob == 99);
+	return crtcs.too_small & 1u << (crtcs.asked - FIRST_CRTC) ? -EINVAL : 0;
 }
 
 void drmModeFreeResources(drmModeResPtr resources)
@@ -199,6 +319,7 @@ static int begin(void **state)
 	free_ms = 0;
 	opens = waits = errors = 0;
 	memset(cards, 0, sizeof(cards));
+	memset(&crtcs, 0, sizeof(crtcs));
 	cards[0] = (struct played_card){ .is_there = true, .has_panel = true, .width_mm = 520 };
 	said[0] = '\0';
 	return 0;
@@ -260,6 +381,26 @@ static void waits_for_the_card_that_drives_the_panel(void **state)
 	cards[0] = (struct played_card){ .is_there = true, .only_renders = true };
 	CHECK(drm_card_open(&card, &any) == 0 && card_of[card.fd] == &cards[1]);
 	CHECK(waits == 6 && errors == 0 && strstr(said, "no graphics card is found yet"));
+	drm_card_close(&card);
+}
+
+/* Of some boards' CRTCs only one can do 3840 x 2160, and not the first. */
+static void takes_a_crtc_that_can_do_the_mode(void **state)
+{
+	static const uint32_t taken[] = { FIRST_CRTC, FIRST_CRTC + 1, FIRST_CRTC, FIRST_CRTC };
+	const struct drm_card_options any = { .may_wait = true };
+
+	(void)state;
+	crtcs.are_atomic = true;
+	for (uint32_t i = 0; i < ARRAY_COUNT(taken); i++) {
+		crtcs.too_small = i; /* the last driver says no to all */
+		CHECK(drm_card_open(&card, &any) == 0 && card.atomic && crtcs.blobs == 0);
+		CHECK(card.crtc == taken[i] && card.plane == card.crtc - FIRST_CRTC + FIRST_PLANE);
+		drm_card_close(&card);
+	}
+	crtcs.are_atomic = false;
+	CHECK(drm_card_open(&card, &any) == 0 && !card.atomic);
+	CHECK(card.crtc == FIRST_CRTC && card.plane == 0);
 	drm_card_close(&card);
 }
 
@@ -363,6 +504,7 @@ int main(void)
 		cmocka_unit_test_setup(waits_for_a_card_without_a_panel_too, begin),
 		cmocka_unit_test_setup(where_a_window_will_do_nobody_waits, begin),
 		cmocka_unit_test_setup(waits_for_the_card_that_drives_the_panel, begin),
+		cmocka_unit_test_setup(takes_a_crtc_that_can_do_the_mode, begin),
 		cmocka_unit_test_setup(a_panel_comes_and_goes, begin),
 		cmocka_unit_test_setup(a_panel_on_another_card_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
