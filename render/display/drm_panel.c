@@ -21,6 +21,7 @@ enum {
 	LOOK_AWAY_MS = 2000,  /* probes every connector, which takes tens of milliseconds */
 	LOOK_SHOWN_MS = 5000, /* for drivers without hot-plug events; probes no connector */
 	REFUSALS_MAX = 3,
+	BUSY_MOST_MS = 60000,
 };
 
 /* ---- decisions */
@@ -250,9 +251,23 @@ int drm_panel_dispatch(struct drm_panel *panel, bool *flipped)
 
 /* ---- showing */
 
+/* Returns whether the card has been busy for too long although it is ours: what it was told to do
+ * before will never end. */
+static bool is_stuck(struct drm_panel *panel, int rc)
+{
+	if (rc != -EBUSY || !drmIsMaster(panel->card.fd)) {
+		panel->busy_since_ms = 0;
+		return false;
+	}
+	if (panel->busy_since_ms == 0)
+		panel->busy_since_ms = clock_now_ms();
+	return clock_now_ms() - panel->busy_since_ms > BUSY_MOST_MS;
+}
+
 static int refused(struct drm_panel *panel, int rc)
 {
-	const enum drm_panel_step step = drm_panel_after_flip(rc, panel->refusals);
+	const enum drm_panel_step step =
+		is_stuck(panel, rc) ? DRM_PANEL_FAULT : drm_panel_after_flip(rc, panel->refusals);
 
 	panel->stale = true;
 	if (step == DRM_PANEL_LATER) {
@@ -269,7 +284,7 @@ static int refused(struct drm_panel *panel, int rc)
 		log_error("render", "the panel refused a picture of %d x %d at %u Hz: %s%s",
 			  panel->card.mode.hdisplay, panel->card.mode.vdisplay,
 			  panel->card.mode.vrefresh, strerror(-rc),
-			  rc == -ENODEV || rc == -ENOMEM
+			  rc == -ENODEV || rc == -ENOMEM || rc == -EBUSY
 				  ? ""
 				  : "; give another mode with --size, or in section [panel] of "
 				    "gopura.conf");
@@ -293,6 +308,7 @@ int drm_panel_show(struct drm_panel *panel, uint32_t fb, bool *shown)
 		log_info("render", "the kiosk controls the panel again");
 	panel->taken_said = false;
 	panel->refusals = 0;
+	panel->busy_since_ms = 0;
 	panel->mode_is_set = true;
 	panel->flip_pending = true;
 	panel->flip_asked_ms = clock_now_ms();

@@ -18,7 +18,9 @@ struct drm_panel {
 	int64_t flip_asked_ms;
 	int64_t look_ms; /* when to check the connector next, unless the kernel reports a change */
 	int64_t retry_ms;
-	unsigned refusals; /* consecutive ones */
+	int64_t busy_since_ms; /* the card says so although no other program has it; 0: it does not
+				*/
+	unsigned refusals;     /* consecutive ones */
 };
 
 /* Opens a card and starts to watch it. options are copied. -ENODEV: no suitable card (logged).

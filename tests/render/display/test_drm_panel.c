@@ -324,6 +324,24 @@ static void a_suspend_that_keeps_the_card_busy_passes(void **state)
 	show_and_flip();
 }
 
+/* No other program has it, and a suspended one would not wait: the driver hangs. */
+static void a_card_that_is_busy_for_ever_is_a_fault(void **state)
+{
+	bool shown;
+	int rc = 0, tries = 0;
+
+	(void)state;
+	show_and_flip();
+	card.flip_rc = -EBUSY;
+	for (; rc == 0; tries++) {
+		CHECK(tries < 300 && drm_panel_ready(&panel));
+		rc = drm_panel_show(&panel, 1, &shown);
+		now_ms += 250;
+		turn();
+	}
+	CHECK(rc == -EBUSY && tries > 200);
+}
+
 static void a_refused_picture_is_tried_with_its_mode(void **state)
 {
 	(void)state;
@@ -460,6 +478,7 @@ int main(void)
 		CASE(a_flip_may_hang_while_the_panel_is_away),
 		CASE(waits_while_another_program_has_the_panel),
 		CASE(a_suspend_that_keeps_the_card_busy_passes),
+		CASE(a_card_that_is_busy_for_ever_is_a_fault),
 		CASE(a_refused_picture_is_tried_with_its_mode),
 		CASE(a_panel_that_refuses_everything_is_a_fault),
 		CASE(a_refusal_for_want_of_a_panel_is_no_fault),
