@@ -509,6 +509,11 @@ bool scene_lacked_memory(const struct scene *scene)
 
 size_t scene_wants(struct scene *scene, struct message_want *wants, size_t most)
 {
+	/* Before there is a root, nothing is drawn that would list them anew. */
+	if (!scene->has_root && scene->lacked_memory) {
+		scene->lacked_memory = false;
+		scene->wants_are_stale = true;
+	}
 	if (scene->wants_are_stale)
 		scene_list_wants(scene);
 	size_t count = scene->want_count < most ? scene->want_count : most;

@@ -1,3 +1,4 @@
+#include <errno.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -10,6 +11,16 @@
 enum { WIDTH = 480, HEIGHT = 270, FRAMES_MAX = 3000 };
 
 static struct little_release *release; /* made once for all tests */
+
+static bool map_is_full;
+
+int __real_map_set(struct map *map, map_key key, uint64_t value);
+int __wrap_map_set(struct map *map, map_key key, uint64_t value);
+
+int __wrap_map_set(struct map *map, map_key key, uint64_t value)
+{
+	return map_is_full ? -ENOMEM : __real_map_set(map, key, value);
+}
 
 struct stage {
 	struct headless *headless;
@@ -266,6 +277,21 @@ static void another_release_is_shown_whole(void **state)
 	CHECK(scene_root(stage.scene) == NULL);
 	settle(&stage, &usual_camera, NULL);
 	CHECK(psnr(&stage, &usual_camera) > 24);
+	strike_stage(&stage);
+}
+
+/* For want of a picture, nothing else would ask for the root again. */
+static void a_root_that_memory_was_lacking_for_is_wanted_again(void **state)
+{
+	struct message_want wants[4];
+	struct stage stage;
+	(void)state;
+	raise_stage(&stage, &usual);
+	map_is_full = true;
+	CHECK(scene_wants(stage.scene, wants, 4) == 0 && scene_lacked_memory(stage.scene));
+	map_is_full = false;
+	CHECK(scene_wants(stage.scene, wants, 4) == 1 && !scene_lacked_memory(stage.scene));
+	CHECK(hash_equal(wants[0].hash, release->root));
 	strike_stage(&stage);
 }
 
@@ -649,6 +675,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(polygons_want_no_images),
 		cmocka_unit_test(objects_that_do_not_decode_are_not_wanted_again),
 		cmocka_unit_test(another_release_is_shown_whole),
+		cmocka_unit_test(a_root_that_memory_was_lacking_for_is_wanted_again),
 		cmocka_unit_test(a_small_atlas_settles_too),
 		cmocka_unit_test(rays_meet_what_is_shown),
 		cmocka_unit_test(backs_are_drawn_where_they_show),
