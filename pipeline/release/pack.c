@@ -3,10 +3,12 @@
 #include "pipeline/release/pack.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,8 +28,8 @@ struct packer {
 	uint32_t block_count, block_room;
 	struct hash *packs; /* owned; names of new packs */
 	uint32_t pack_count, pack_room;
-	struct buffer pack;  /* the pack being filled */
-	bool *before_exists; /* owned; for each pack of before */
+	struct buffer pack;     /* the pack being filled */
+	uint64_t *before_bytes; /* owned; of each pack of before; 0: it is missing */
 };
 
 static int path_of(char path[PATH_MAX], const char *release, const char *folder, struct hash name)
@@ -38,6 +40,23 @@ static int path_of(char path[PATH_MAX], const char *release, const char *folder,
 	return snprintf(path, PATH_MAX, "%s/%s/%s", release, folder, hex) < PATH_MAX
 		       ? 0
 		       : -ENAMETOOLONG;
+}
+
+/* Returns the size of a pack; 0: it is missing. */
+static uint64_t pack_bytes(const char *release, struct hash name)
+{
+	char path[PATH_MAX];
+	struct stat status;
+
+	return path_of(path, release, "packs", name) == 0 && access(path, R_OK) == 0 &&
+			       stat(path, &status) == 0
+		       ? (uint64_t)status.st_size
+		       : 0;
+}
+
+static bool holds(uint64_t bytes, const struct locator_block *block)
+{
+	return (uint64_t)block->offset + block->size <= bytes;
 }
 
 static int queue_page(struct packer *packer, const struct page_child *page)
@@ -91,14 +110,16 @@ static int end_pack(struct packer *packer)
 	return 0;
 }
 
-/* Returns the page's block in the earlier release, if its pack still exists. */
+/* Returns the page's block in the earlier release, if its pack still has it. */
 static const struct locator_block *block_before(const struct packer *packer, struct hash page,
 						uint64_t size)
 {
 	const struct locator *before = packer->options->before;
 	const struct locator_block *block = before ? locator_find(before, page) : NULL;
 
-	return block && block->size == size && packer->before_exists[block->pack] ? block : NULL;
+	return block && block->size == size && holds(packer->before_bytes[block->pack], block)
+		       ? block
+		       : NULL;
 }
 
 static int write_block(struct packer *packer, struct hash page, const struct page_child *children,
@@ -108,6 +129,12 @@ static int write_block(struct packer *packer, struct hash page, const struct pag
 	struct locator_block block = { .page = page, .size = (uint32_t)size };
 	int rc = size > PACK_BYTES_MAX ? -EFBIG : 0;
 
+	if (rc < 0)
+		log_error("pipeline",
+			  "all pictures and spoken texts, or all published patches, have %.2f GB "
+			  "together, and at most %.2f are possible: leave some out, make them "
+			  "smaller, or lower publish_share",
+			  (double)size / 1e9, PACK_BYTES_MAX / 1e9);
 	if (rc == 0 && packer->pack.size > 0 && packer->pack.size + size > most)
 		rc = end_pack(packer);
 	block.pack = NEW_PACK | packer->pack_count;
@@ -190,16 +217,11 @@ static int look_for_packs_before(struct packer *packer)
 
 	if (!before)
 		return 0;
-	packer->before_exists = calloc(before->pack_count + 1, sizeof(bool));
-	if (!packer->before_exists)
+	packer->before_bytes = calloc(before->pack_count + 1, sizeof(*packer->before_bytes));
+	if (!packer->before_bytes)
 		return -ENOMEM;
-	for (uint32_t i = 0; i < before->pack_count; i++) {
-		char path[PATH_MAX];
-
-		packer->before_exists[i] =
-			path_of(path, packer->options->release, "packs", before->packs[i]) == 0 &&
-			access(path, R_OK) == 0;
-	}
+	for (uint32_t i = 0; i < before->pack_count; i++)
+		packer->before_bytes[i] = pack_bytes(packer->options->release, before->packs[i]);
 	return 0;
 }
 
@@ -264,31 +286,50 @@ static int write_locator(struct packer *packer)
 	return rc;
 }
 
-/* Makes a folder, or removes what a publisher that was killed left there. */
-static int make_folder(const char *release, const char *name)
+static int make_folder(const char *release, const char *name, char path[PATH_MAX])
 {
-	char path[PATH_MAX];
-
-	if (snprintf(path, sizeof(path), "%s/%s", release, name) >= PATH_MAX)
+	if (snprintf(path, PATH_MAX, "%s/%s", release, name) >= PATH_MAX)
 		return -ENAMETOOLONG;
-	if (mkdir(path, 0755) == 0 || errno == EEXIST) {
-		bytes_sweep_folder(path, INT64_MAX);
+	if (mkdir(path, 0755) == 0 || errno == EEXIST)
 		return 0;
-	}
 	log_error("pipeline", "%s: %s", path, strerror(errno));
 	return -errno;
+}
+
+/* Makes both folders, and removes what a publisher that was killed left there. Other publishers,
+ * who may be teams of other temples, wait until *fd is closed. */
+static int begin(const char *release, int *fd)
+{
+	char packs[PATH_MAX], locator[PATH_MAX];
+	int rc = make_folder(release, "packs", packs);
+
+	*fd = -1;
+	if (rc == 0)
+		rc = make_folder(release, "locator", locator);
+	if (rc < 0)
+		return rc;
+	*fd = open(packs, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (*fd < 0) {
+		rc = -errno;
+		log_error("pipeline", "%s: %s", packs, strerror(-rc));
+		return rc;
+	}
+	if (flock(*fd, LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
+		log_info("pipeline", "%s: waiting for another publisher", packs);
+	if (flock(*fd, LOCK_EX) < 0)
+		log_debug("pipeline", "%s: cannot be locked: %s", packs, strerror(errno));
+	bytes_sweep_folder(packs, INT64_MAX);
+	bytes_sweep_folder(locator, INT64_MAX);
+	return 0;
 }
 
 int pack_release(const struct pack_options *options, struct pack_result *result)
 {
 	struct packer packer = { .options = options, .result = result };
-	int rc;
+	int fd, rc = begin(options->release, &fd);
 
 	*result = (struct pack_result){ 0 };
 	buffer_init(&packer.pack, (size_t)PACK_BYTES_MAX + PACK_BYTES);
-	rc = make_folder(options->release, "packs");
-	if (rc == 0)
-		rc = make_folder(options->release, "locator");
 	if (rc == 0)
 		rc = look_for_packs_before(&packer);
 	if (rc == 0)
@@ -300,7 +341,9 @@ int pack_release(const struct pack_options *options, struct pack_result *result)
 	free(packer.queue);
 	free(packer.blocks);
 	free(packer.packs);
-	free(packer.before_exists);
+	free(packer.before_bytes);
+	if (fd >= 0)
+		close(fd);
 	return rc;
 }
 
@@ -317,5 +360,28 @@ int pack_read_locator(struct locator *out, const char *release, struct hash root
 	if (rc == 0)
 		rc = locator_decode(out, buffer_bytes(&file));
 	buffer_finish(&file);
+	return rc;
+}
+
+int pack_read_whole(struct locator *out, const char *release, struct hash root)
+{
+	int rc = pack_read_locator(out, release, root);
+	uint32_t pack = UINT32_MAX;
+	uint64_t bytes = 0;
+
+	for (uint32_t i = 0; rc == 0 && i < out->block_count; i++) {
+		const struct locator_block *block = &out->blocks[i];
+		char hex[HASH_HEX_BYTES];
+
+		if (block->pack != pack)
+			bytes = pack_bytes(release, out->packs[block->pack]);
+		pack = block->pack;
+		if (holds(bytes, block))
+			continue;
+		hash_to_hex(out->packs[pack], hex);
+		log_warn("pipeline", "%s/packs/%s is %s", release, hex,
+			 bytes > 0 ? "cut off" : "missing");
+		rc = -ENODATA;
+	}
 	return rc;
 }

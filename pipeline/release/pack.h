@@ -38,12 +38,16 @@ struct pack_result {
 	uint64_t locator_bytes;
 };
 
-/* Writes the packs, then locator/ROOT. Deterministic. A block is reused only if its old pack still
- * exists; otherwise it is written again. Errors are logged. */
+/* Writes the packs, then locator/ROOT. Deterministic. A block is reused only if its old pack is
+ * still there and long enough; otherwise it is written again. Other publishers into the folder wait
+ * meanwhile. Errors are logged. */
 must_check int pack_release(const struct pack_options *options, struct pack_result *result);
 
 /* Reads locator/ROOT of a release folder. The caller ends *out with locator_finish(), also on
  * failure. Returns -ENOENT if there is none, or the errors of locator_decode and the disk. */
 must_check int pack_read_locator(struct locator *out, const char *release, struct hash root);
+/* The same, and looks for the packs that it names. -ENODATA: one is missing or cut off, which is
+ * logged as a warning; *out is set then. */
+must_check int pack_read_whole(struct locator *out, const char *release, struct hash root);
 
 #endif

@@ -285,7 +285,7 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 		return rc;
 	report->release = before;
 	same = rc == 0 && hash_equal(before.root, page.hash) &&
-	       pack_read_locator(&whole, target->release, page.hash) == 0;
+	       pack_read_whole(&whole, target->release, page.hash) == 0;
 	locator_finish(&whole);
 	if (!same)
 		rc = pack(report, target, objects, &page, &before);
@@ -323,11 +323,15 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 			  target->release);
 	if (rc < 0)
 		return rc;
-	rc = pack_read_locator(&locator, target->release, again.root);
+	rc = pack_read_whole(&locator, target->release, again.root);
 	locator_finish(&locator);
 	if (rc < 0) {
-		log_error("pipeline", "release %" PRIu64 " has no locator any more: %s",
-			  again.sequence, strerror(-rc));
+		log_error("pipeline",
+			  "release %" PRIu64
+			  " is not whole any more, so no terminal could load it: "
+			  "its %s",
+			  again.sequence,
+			  rc == -ENODATA ? "packs are not all there" : "locator cannot be read");
 		return rc;
 	}
 	root = (struct page_child){ .hash = again.root, .size = again.root_bytes };

@@ -6,7 +6,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/log.h"
 #include "pipeline/content/start_view.h"
@@ -75,20 +74,12 @@ static int destination_init(struct destination *destination, char release[PATH_M
 	return open_keys(destination, options);
 }
 
-/* Measures the current release by its locator. Returns -ENOENT if a pack is missing. */
+/* Measures the current release by its locator. Errors of pack_read_whole. */
 static int measure(struct publish_content_report *report)
 {
 	struct locator locator;
-	int rc = pack_read_locator(&locator, report->release, report->publish.release.root);
+	int rc = pack_read_whole(&locator, report->release, report->publish.release.root);
 
-	for (uint32_t i = 0; rc == 0 && i < locator.pack_count; i++) {
-		char path[PATH_MAX + 64], hex[HASH_HEX_BYTES];
-
-		hash_to_hex(locator.packs[i], hex);
-		snprintf(path, sizeof(path), "%s/packs/%s", report->release, hex);
-		if (access(path, R_OK) < 0)
-			rc = -ENOENT;
-	}
 	for (uint32_t i = 0; rc == 0 && i < locator.block_count; i++)
 		report->release_bytes += locator.blocks[i].size;
 	report->release_packs = locator.pack_count;
@@ -291,10 +282,16 @@ static int look_at_current(struct publish_content_report *report,
 
 	*report = (struct publish_content_report){ 0 };
 	rc = destination_init(&destination, report->release, options);
-	if (rc == 0)
+	if (rc == 0) {
 		rc = published_current(&destination.target, &report->publish.release);
-	if (rc == 0)
-		rc = measure(report);
+		if (rc == 0)
+			rc = measure(report);
+		if (renew && (rc == -ENOENT || rc == -ENODATA))
+			log_error("pipeline",
+				  "%s: there is no whole release that the present keys have "
+				  "signed: run `gopura-content publish` or `build`, which make one",
+				  report->release);
+	}
 	if (rc == 0 && renew)
 		rc = publish_renew(&report->publish, &destination.target);
 	keys_finish(&destination.keys);

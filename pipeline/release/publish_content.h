@@ -43,11 +43,11 @@ must_check int publish_content_again(struct publish_content_report *report,
 				     const struct publish_content_options *options,
 				     uint64_t sequence);
 
-/* Reports the current release; nothing is published. Returns -ENOENT as below. */
+/* Reports the current release; nothing is published. Returns the errors below, without a word. */
 must_check int publish_content_current(struct publish_content_report *report,
 				       const struct publish_content_options *options);
 /* Signs anew what runs out: see publish_renew. Returns -ENOENT if nothing was published there, or
- * some of its packs are missing. */
+ * its locator is missing; -ENODATA: some of its packs are. */
 must_check int publish_content_renew(struct publish_content_report *report,
 				     const struct publish_content_options *options);
 

@@ -1,9 +1,12 @@
 #include "pipeline/release/pack.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/check.h"
@@ -160,6 +163,60 @@ static void a_pack_that_is_gone_is_not_pointed_into(void **state)
 	locator_finish(&after);
 }
 
+/* Has the folder for a moment, with a pack half written. Returns 0 if the pack could be finished.
+ */
+static int another_publisher(int told_fd)
+{
+	char packs[100], path[120], temporary[BYTES_PATH_MAX];
+	int fd, file;
+
+	snprintf(packs, sizeof(packs), "%s/packs", folder);
+	snprintf(path, sizeof(path), "%s/theirs", packs);
+	fd = open(packs, O_RDONLY | O_DIRECTORY);
+	file = bytes_begin_file(temporary, path);
+	if (fd < 0 || file < 0 || flock(fd, LOCK_EX) < 0 || write(told_fd, "x", 1) != 1)
+		return 1;
+	usleep(300000); /* in which the pack would be removed */
+	return bytes_end_file(file, temporary, path, 0) < 0;
+}
+
+static void another_publishers_half_written_pack_is_left_alone(void **state)
+{
+	struct page_child root = tree(0);
+	struct pack_result result;
+	int told[2], status;
+	char command[100], byte;
+	pid_t child;
+
+	(void)state;
+	snprintf(command, sizeof(command), "mkdir '%s/packs'", folder);
+	CHECK(system(command) == 0 && pipe(told) == 0);
+	child = fork();
+	if (child == 0)
+		_exit(another_publisher(told[1]));
+	CHECK(read(told[0], &byte, 1) == 1);
+	CHECK(pack(root, NULL, &result) == 0);
+	CHECK(waitpid(child, &status, 0) == child);
+	CHECK(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+	close(told[0]);
+	close(told[1]);
+}
+
+static void what_a_killed_publisher_left_is_removed(void **state)
+{
+	struct page_child root = tree(0);
+	struct pack_result result;
+	char command[200];
+
+	(void)state;
+	snprintf(command, sizeof(command), "mkdir '%s/packs' && touch '%s/packs/x.abc123'", folder,
+		 folder);
+	CHECK(system(command) == 0);
+	CHECK(pack(root, NULL, &result) == 0);
+	snprintf(command, sizeof(command), "test ! -e '%s/packs/x.abc123'", folder);
+	CHECK(system(command) == 0);
+}
+
 static void an_object_that_is_missing_stops_it(void **state)
 {
 	struct page_child nowhere = { .hash = { { 1, 2, 3 } }, .size = 10 }, root;
@@ -213,6 +270,10 @@ int main(void)
 		cmocka_unit_test_setup_teardown(blocks_of_before_stay_where_they_are, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_pack_that_is_gone_is_not_pointed_into, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(another_publishers_half_written_pack_is_left_alone,
+						set_up, tear_down),
+		cmocka_unit_test_setup_teardown(what_a_killed_publisher_left_is_removed, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(an_object_that_is_missing_stops_it, set_up,
 						tear_down),

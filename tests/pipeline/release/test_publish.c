@@ -140,6 +140,54 @@ static void a_change_adds_only_what_changed(void **state)
 	CHECK(verify() == 0);
 }
 
+/* The path of the pack of a release that has its last tiles. */
+static void last_pack(char path[PATH_MAX], struct hash root)
+{
+	struct locator locator;
+	char hex[HASH_HEX_BYTES];
+
+	CHECK(pack_read_whole(&locator, tiny.release, root) == 0);
+	hash_to_hex(locator.packs[locator.pack_count - 1], hex);
+	snprintf(path, PATH_MAX, "%s/packs/%s", tiny.release, hex);
+	locator_finish(&locator);
+}
+
+static void a_pack_that_was_lost_or_cut_is_made_again(void **state)
+{
+	struct publish_report report = tiny_publish(&tiny, NULL);
+	char path[PATH_MAX], title[20];
+
+	(void)state;
+	for (uint64_t sequence = 2; sequence <= 5; sequence++) {
+		last_pack(path, report.release.root);
+		CHECK((sequence % 2 ? unlink(path) : truncate(path, 10)) == 0);
+		CHECK(verify() < 0);
+		if (sequence > 3) { /* not that alone */
+			snprintf(title, sizeof(title), "Tower %d", (int)sequence);
+			tiny_parts(&tiny, title);
+		}
+		report = tiny_publish(&tiny, NULL);
+		CHECK(report.changed && report.release.sequence == sequence);
+		CHECK(verify() == 0);
+	}
+}
+
+static void a_release_that_lost_a_pack_is_not_gone_back_to(void **state)
+{
+	const struct publish_target target = tiny_target(&tiny);
+	struct publish_report report = tiny_publish(&tiny, NULL);
+	char path[PATH_MAX];
+
+	(void)state;
+	last_pack(path, report.release.root);
+	tiny_parts(&tiny, "High tower");
+	tiny_publish(&tiny, NULL);
+	CHECK(unlink(path) == 0);
+	CHECK(publish_again(&report, &target, 0) == -ENODATA);
+	CHECK(tiny_publish(&tiny, NULL).release.sequence == 3);
+	CHECK(verify() == 0);
+}
+
 /* A server tells versions of a file apart by size and second. */
 static void no_two_timestamps_are_of_one_second(void **state)
 {
@@ -355,6 +403,10 @@ int main(void)
 		cmocka_unit_test_setup_teardown(the_same_content_gives_the_same_packs, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_change_adds_only_what_changed, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(a_pack_that_was_lost_or_cut_is_made_again, set_up,
+						tear_down),
+		cmocka_unit_test_setup_teardown(a_release_that_lost_a_pack_is_not_gone_back_to,
+						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(no_two_timestamps_are_of_one_second, set_up,
 						tear_down),
 		cmocka_unit_test_setup_teardown(undo_shows_the_old_root_under_a_higher_sequence,
