@@ -13,6 +13,7 @@
 
 #include "base/clock.h"
 #include "base/log.h"
+#include "base/transient.h"
 #include "format/metadata_sign.h"
 #include "pipeline/keys/exchange_folder.h"
 
@@ -354,6 +355,12 @@ static bool role_has(const struct role_keys *role, const struct signing_key *key
 	return false;
 }
 
+static bool names(const struct trust_root *root, const struct publisher_keys *keys)
+{
+	return role_has(&root->roles[META_RELEASE], &keys->release) &&
+	       role_has(&root->roles[META_TIMESTAMP], &keys->timestamp);
+}
+
 int keys_read_trust(struct trust_root *trust, const char *folder)
 {
 	const char *why = "unreadable";
@@ -386,14 +393,33 @@ int keys_load(struct publisher_keys *out, const char *folder)
 		rc = read_key(&out->release, folder, role_names[META_RELEASE]);
 	if (rc == 0)
 		rc = read_key(&out->timestamp, folder, role_names[META_TIMESTAMP]);
-	if (rc == 0 && (!role_has(&out->trust.roles[META_RELEASE], &out->release) ||
-			!role_has(&out->trust.roles[META_TIMESTAMP], &out->timestamp))) {
+	if (rc == 0 && !names(&out->trust, out)) {
 		log_error("pipeline", "%s: the newest root does not name these keys", folder);
 		rc = -EKEYREJECTED;
 	}
 	if (rc < 0)
 		keys_finish(out);
 	return rc;
+}
+
+int keys_check_release(const struct publisher_keys *keys, const char *release)
+{
+	struct trust_root newest = keys->trust;
+	const char *why = NULL;
+	const int rc = keys_follow_roots(&newest, release, &why);
+
+	if (rc < 0 && (is_transient(rc) || !why))
+		return complain(release, rc);
+	if (rc < 0)
+		log_warn("pipeline", "%s/root/%u.json: %s; terminals refuse it: remove it", release,
+			 newest.version + 1, why);
+	if (names(&newest, keys))
+		return 0;
+	log_error("pipeline",
+		  "%s/root/%u.json does not name these keys, so terminals would refuse what they "
+		  "sign: keys were exchanged elsewhere since; bring the folder of keys from there",
+		  release, newest.version);
+	return -EKEYREJECTED;
 }
 
 void keys_finish(struct publisher_keys *keys)

@@ -41,6 +41,10 @@ must_check int keys_sync_parent(const char *folder);
  * of keys was not finished. Errors are logged, except that there is no root/1.json. */
 must_check int keys_load(struct publisher_keys *out, const char *folder);
 void keys_finish(struct publisher_keys *keys); /* Wipes the keys. NULL is fine. */
+/* Returns -EKEYREJECTED, logged, if a release folder has later roots than these keys, as after an
+ * exchange that was made elsewhere, and the newest of them does not name them: terminals would
+ * refuse what they sign. Errors of reading are logged too. */
+must_check int keys_check_release(const struct publisher_keys *keys, const char *release);
 
 /* Reads NAME.key, a key besides those three, or makes it where there is none. The caller wipes
  * *out. Errors as of keys_load. */

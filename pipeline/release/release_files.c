@@ -141,7 +141,10 @@ static int read_release(struct release *out, const char *release, const char *na
 int release_files_current(struct release *out, const char *release, const char *keys_folder,
 			  const struct publisher_keys *keys)
 {
-	return read_release(out, release, "release.json", keys_folder, keys);
+	const int rc = keys_check_release(keys, release);
+
+	*out = (struct release){ 0 };
+	return rc < 0 ? rc : read_release(out, release, "release.json", keys_folder, keys);
 }
 
 int release_files_at(struct release *out, const char *release, const char *keys_folder,

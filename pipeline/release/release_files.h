@@ -14,7 +14,7 @@
 /* Reads the current release from its signed file. Returns -ENOENT if nothing was published yet; or
  * by a release.key that was exchanged, and *out is that release then, of which only the number
  * counts. Other errors are logged: a release.json that our own keys did not sign is never
- * overwritten. */
+ * overwritten, and nothing is by keys that terminals trust no more (keys_check_release). */
 must_check int release_files_current(struct release *out, const char *release,
 				     const char *keys_folder, const struct publisher_keys *keys);
 

@@ -187,6 +187,14 @@ struct next {
 	bool renews; /* as struct tuf_change has it */
 };
 
+static void complain_behind(const struct tuf_place *place)
+{
+	log_error("pipeline",
+		  "%s/tuf has later roots than %s/tuf: keys were exchanged elsewhere since; bring "
+		  "the folder of keys from there, or what the museum hands over",
+		  place->release, place->keys_folder);
+}
+
 static int stage(struct next *next, enum tuf_type type, uint32_t version, cJSON *content)
 {
 	struct tuf_staged *staged = &next->files[type];
@@ -194,6 +202,8 @@ static int stage(struct next *next, enum tuf_type type, uint32_t version, cJSON 
 
 	if (rc == 0)
 		rc = tuf_staged_sign(staged, &next->signing);
+	if (rc == -EKEYREJECTED && next->folder.is_ahead)
+		complain_behind(&next->folder.place);
 	if (rc == 0)
 		rc = tuf_staged_write(staged);
 	return rc == 0 && !next->unsigned_folder ? tuf_staged_check(staged) : rc;

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "base/transient.h"
 #include "pipeline/keys/keys_tuf.h"
 
 /* ---- where */
@@ -106,6 +107,10 @@ static int follow_root(struct tuf_folder *folder, struct bytes bytes, const char
 
 static int open_root(struct tuf_folder *folder)
 {
+	if (rc == 0 && folder->root.json && next.version != folder->root.version + 1) {
+		rc = -EBADMSG;
+		*why = "says that it is another version";
+	}
 	const char *why = "cannot be read";
 	struct buffer file;
 	uint32_t version = 1;
@@ -115,9 +120,34 @@ static int open_root(struct tuf_folder *folder)
 	while ((rc = keys_read_tuf_root(&file, folder->place.keys_folder, version)) == 0 &&
 	       (rc = follow_root(folder, buffer_bytes(&file), &why)) == 0)
 		version++;
+/* The release folder may have later roots than the keys' folder, after an exchange of keys that was
+ * made elsewhere. Terminals follow them, so they say which keys may sign. */
+static int follow_published(struct tuf_folder *folder)
+{
+	const struct tuf_place *place = &folder->place;
+	const uint32_t last = folder->root.version;
+	const char *why = "cannot be read";
+	struct buffer file;
+	int rc;
+
+	buffer_init(&file, TUF_FOLDER_FILE_BYTES_MAX);
+	while ((rc = keys_read_tuf_root(&file, place->release, folder->root.version + 1)) == 0 &&
+	       (rc = follow_root(folder, buffer_bytes(&file), &why)) == 0)
+		;
+	buffer_finish(&file);
+	folder->is_ahead = folder->root.version > last;
+	if (rc == -ENOENT)
+		return 0;
+	if (is_transient(rc))
+		return complain(folder, "tuf", rc, strerror(-rc));
+	log_warn("pipeline", "%s/tuf/%" PRIu32 ".root.json: %s; terminals refuse it: remove it",
+		 place->release, folder->root.version + 1, why);
+	return 0;
+}
+
 	buffer_finish(&file);
 	if (rc == -ENOENT && version > 1)
-		return 0;
+		return follow_published(folder);
 	if (rc == -ENOENT)
 		why = "is not there; make it with `gopura-content keys DIR --tuf`, or put your own "
 		      "there";
@@ -149,7 +179,8 @@ static bool was_signed(const struct tuf_folder *folder, const struct tuf_file *f
 	for (uint32_t version = folder->root.version; !was && --version > 0;) {
 		struct tuf_file root = { 0 };
 
-		was = keys_read_tuf_root(&bytes, folder->place.keys_folder, version) == 0 &&
+		was = (keys_read_tuf_root(&bytes, folder->place.keys_folder, version) == 0 ||
+		       keys_read_tuf_root(&bytes, folder->place.release, version) == 0) &&
 		      tuf_file_parse(&root, buffer_bytes(&bytes), TUF_ROOT, &why) == 0 &&
 		      tuf_file_verify(file, tuf_root_keys(&root), tuf_root_role(&root, type)) == 0;
 		tuf_file_finish(&root);

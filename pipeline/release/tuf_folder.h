@@ -1,6 +1,7 @@
 /* What a release folder holds of The Update Framework, for the publisher: the files that a terminal
- * would read, checked against the newest root of the keys' folder. Expiry is not judged: what has
- * expired is what a publisher signs anew. */
+ * would read, checked against the newest root: that of the keys' folder, or of the release folder
+ * if keys were exchanged elsewhere. Expiry is not judged: what has expired is what a publisher
+ * signs anew. */
 #ifndef GOPURA_PIPELINE_RELEASE_TUF_FOLDER_H
 #define GOPURA_PIPELINE_RELEASE_TUF_FOLDER_H
 
@@ -20,6 +21,7 @@ struct tuf_place {
 struct tuf_folder {
 	struct tuf_place place;
 	struct tuf_file root;
+	bool is_ahead; /* root is of the release folder, the keys' folder has not got it yet */
 	/* Empty where there is none yet. own: the role's file, empty for the top itself, which is
 	 * targets.json. */
 	struct tuf_file timestamp, snapshot, top, own;
@@ -33,8 +35,9 @@ struct tuf_folder {
 };
 
 /* Reads it. Nothing may be there but a root in the keys' folder. Returns 0; -ENOENT: no root;
- * -EKEYREJECTED: the root's keys have not signed what must be carried on; -EBADMSG. Errors are
- * logged. tuf_folder_finish frees it, also after a failure. */
+ * -EKEYREJECTED: the root's keys have not signed what must be carried on; -EBADMSG: a file is
+ * damaged, or missing though another names it. Errors are logged. tuf_folder_finish frees it, also
+ * after a failure. */
 must_check int tuf_folder_open(struct tuf_folder *out, const struct tuf_place *place);
 void tuf_folder_finish(struct tuf_folder *folder);
 

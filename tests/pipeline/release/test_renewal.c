@@ -1,5 +1,6 @@
 /* What becomes of a release that nobody changes for years. */
 #include <errno.h>
+#include <limits.h>
 
 #include "base/clock.h"
 #include "pipeline/keys/keys_exchange.h"
@@ -32,11 +33,11 @@ static int enter(void **state)
 	return set_up(state);
 }
 
-/* As a client without anything would, by the clock of this test. */
-static void check_valid(uint64_t sequence)
+/* As a client without anything would, by the clock of this test. target: NULL: release.json. */
+static void check_valid_at(uint64_t sequence, const char *target)
 {
 	const struct release_reader_options options = { .place = tiny.release };
-	struct verify_options verify = { .now_s = clock_wall_s() };
+	struct verify_options verify = { .now_s = clock_wall_s(), .target = target };
 	struct verify_report report;
 
 	CHECK(release_reader_create(&verify.reader, &options) == 0);
@@ -44,6 +45,11 @@ static void check_valid(uint64_t sequence)
 		fail_msg("%s", report.diagnostics.first.text);
 	CHECK(report.release.sequence == sequence);
 	release_reader_destroy(verify.reader);
+}
+
+static void check_valid(uint64_t sequence)
+{
+	check_valid_at(sequence, NULL);
 }
 
 static void publishing_what_has_not_changed_signs_it_again_in_time(void **state)
@@ -232,6 +238,98 @@ static void a_timestamp_of_a_key_that_was_exchanged_tells_no_time(void **state)
 	}
 }
 
+/* ---- keys and files of earlier days */
+
+/* The keys as they were are in *out and in old: a second machine, or a backup. */
+static void keep_old_keys(struct publisher_keys *out, char old[PATH_MAX])
+{
+	char command[400];
+
+	snprintf(old, PATH_MAX, "%s/old", tiny.folder);
+	snprintf(command, sizeof(command), "cp -a '%s' '%s'", tiny.keys_at, old);
+	CHECK(system(command) == 0);
+	CHECK(keys_load(out, old) == 0);
+}
+
+static void keys_that_were_exchanged_elsewhere_sign_nothing(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_target behind = target;
+	struct keys_exchanged exchanged;
+	struct publish_report report;
+	struct publisher_keys keys;
+	char old[PATH_MAX];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	keep_old_keys(&keys, old);
+	behind.keys = &keys;
+	behind.keys_folder = old;
+	CHECK(keys_exchange(&exchanged, tiny.keys_at, 1 << EXCHANGE_TIMESTAMP) == 0);
+	keys_finish(&tiny.keys);
+	CHECK(keys_load(&tiny.keys, tiny.keys_at) == 0);
+	for (int alone = 0; alone < 2; alone++) {
+		struct hash before;
+
+		target.tuf_alone = behind.tuf_alone = alone;
+		CHECK(publish_renew(&report, &target) == 0);
+		check_valid(1);
+		before = all_files();
+		CHECK(publish_renew(&report, &behind) == -EKEYREJECTED);
+		CHECK(hash_equal(all_files(), before));
+		CHECK(publish_again(&report, &behind, 1) == -EKEYREJECTED);
+		check_valid(1);
+		CHECK(publish_renew(&report, &target) == 0);
+	}
+	keys_finish(&keys);
+}
+
+/* The root key alone is another: who has the old roots may still publish. */
+static void keys_that_the_newest_root_still_names_sign(void **state)
+{
+	struct publish_target behind = tiny_target(&tiny);
+	struct keys_exchanged exchanged;
+	struct publish_report report;
+	struct publisher_keys keys;
+	char old[PATH_MAX];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	keep_old_keys(&keys, old);
+	CHECK(keys_exchange(&exchanged, tiny.keys_at, 1 << EXCHANGE_ROOT) == 0);
+	tiny_publish(&tiny, NULL);
+	behind.keys = &keys;
+	behind.keys_folder = old;
+	for (int alone = 0; alone < 2; alone++) {
+		behind.tuf_alone = alone;
+		CHECK(publish_again(&report, &behind, 1) == 0);
+		check_valid(report.release.sequence);
+	}
+	keys_finish(&keys);
+}
+
+/* Such a file keeps terminals away, but no publisher. */
+static void a_root_that_does_not_follow_ends_the_search(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+	char command[400];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	snprintf(command, sizeof(command),
+		 "cd '%s' && cp root/1.json root/2.json && cp tuf/1.root.json tuf/2.root.json",
+		 tiny.release);
+	CHECK(system(command) == 0);
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		CHECK(publish_renew(&report, &target) == 0);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -250,6 +348,12 @@ int main(void)
 			tear_down),
 		cmocka_unit_test_setup_teardown(
 			a_timestamp_of_a_key_that_was_exchanged_tells_no_time, enter, tear_down),
+		cmocka_unit_test_setup_teardown(keys_that_were_exchanged_elsewhere_sign_nothing,
+						enter, tear_down),
+		cmocka_unit_test_setup_teardown(keys_that_the_newest_root_still_names_sign, enter,
+						tear_down),
+		cmocka_unit_test_setup_teardown(a_root_that_does_not_follow_ends_the_search, enter,
+						tear_down),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
