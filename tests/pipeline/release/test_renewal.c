@@ -330,6 +330,25 @@ static void a_root_that_does_not_follow_ends_the_search(void **state)
 	}
 }
 
+/* Terminals of the earlier form would take what is left for the newest release. */
+static void going_over_to_one_form_needs_no_other_change(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+	char path[200];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	target.tuf_alone = true;
+	CHECK(publish_renew(&report, &target) == 0 && !report.changed);
+	snprintf(path, sizeof(path), "%s/release.json", tiny.release);
+	CHECK(access(path, F_OK) < 0);
+	snprintf(path, sizeof(path), "%s/timestamp.json", tiny.release);
+	CHECK(access(path, F_OK) < 0);
+	check_valid(1);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -353,6 +372,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(keys_that_the_newest_root_still_names_sign, enter,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_root_that_does_not_follow_ends_the_search, enter,
+						tear_down),
+		cmocka_unit_test_setup_teardown(going_over_to_one_form_needs_no_other_change, enter,
 						tear_down),
 	};
 
