@@ -95,18 +95,19 @@ static int sign_alone(const struct publish_target *target, const struct release 
 	return rc;
 }
 
-/* Signs and writes the files of the next release. */
+/* Signs and writes the files of the release after `before`, of which only the number counts. */
 static int sign(struct publish_report *report, const struct publish_target *target,
-		const struct page_child *root, uint64_t sequence)
+		const struct page_child *root, const struct release *before)
 {
 	struct release release = {
-		.sequence = sequence,
 		.expires_s = clock_wall_s() + life_or(target->release_life_s, RELEASE_LIFE_DAYS),
 		.root = root->hash,
 		.root_bytes = root->size,
 	};
 	int rc = keys_last_tuf_root(&release.tuf_root, target->keys_folder);
 
+	if (rc == 0)
+		rc = published_next(&release.sequence, target, before->sequence);
 	if (rc < 0)
 		return rc;
 	if (target->comment && snprintf(release.comment, sizeof(release.comment), "%s",
@@ -167,7 +168,7 @@ static int renew_release(struct publish_report *report, const struct publish_tar
 	int rc;
 
 	again.comment = current->comment;
-	rc = sign(report, &again, &root, published_next(target, current->sequence));
+	rc = sign(report, &again, &root, current);
 	if (rc == 0)
 		log_info("pipeline",
 			 "release %" PRIu64 " has less than two fifths of its life left, so it is "
@@ -293,9 +294,10 @@ int publish_parts(struct publish_report *report, const struct publish_target *ta
 		rc = pack(report, target, objects, &page, &before);
 	if (rc < 0)
 		return rc;
-	if (same && (!target->comment || strcmp(target->comment, before.comment) == 0))
+	if (same && target->above == 0 &&
+	    (!target->comment || strcmp(target->comment, before.comment) == 0))
 		return renew(report, target, &before);
-	return sign(report, target, &page, published_next(target, before.sequence));
+	return sign(report, target, &page, &before);
 }
 
 int publish_again(struct publish_report *report, const struct publish_target *target,
@@ -337,5 +339,5 @@ int publish_again(struct publish_report *report, const struct publish_target *ta
 		return rc;
 	}
 	root = (struct page_child){ .hash = again.root, .size = again.root_bytes };
-	return sign(report, target, &root, published_next(target, current.sequence));
+	return sign(report, target, &root, &current);
 }

@@ -188,17 +188,19 @@ void published_drop_earlier(const struct publish_target *target)
 				 path);
 }
 
-uint64_t published_next(const struct publish_target *target, uint64_t current)
+int published_next(uint64_t *out, const struct publish_target *target, uint64_t current)
 {
 	const struct tuf_place place = published_place(target);
 	struct tuf_folder folder;
 	uint32_t root;
+	int rc = keys_last_tuf_root(&root, target->keys_folder);
 
-	if (keys_last_tuf_root(&root, target->keys_folder) == 0 && root > 0) {
-		if (tuf_folder_open(&folder, &place) == 0 &&
-		    tuf_folder_naming_version(&folder) > current)
-			current = tuf_folder_naming_version(&folder);
-		tuf_folder_finish(&folder);
-	}
-	return current + 1;
+	*out = current + 1;
+	if (rc < 0 || root == 0)
+		return rc;
+	rc = open_folder(&folder, &place);
+	if (tuf_folder_naming_version(&folder) > current)
+		*out = tuf_folder_naming_version(&folder) + 1ull;
+	tuf_folder_finish(&folder);
+	return rc;
 }

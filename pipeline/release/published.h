@@ -29,9 +29,10 @@ must_check int published_expires_s(const struct publish_target *target,
  * than nobody publishes, and the target does not trust it. Errors are logged. */
 must_check int published_check_clock(const struct publish_target *target);
 
-/* Returns the sequence of the next release: above that of the current one, and above the versions
- * of what others published in its place. */
-uint64_t published_next(const struct publish_target *target, uint64_t current);
+/* Finds the sequence of the next release: above that of the current one and target->above, and
+ * above the versions of what others published in its place. Errors of tuf_folder_open: nothing can
+ * be published then. */
+must_check int published_next(uint64_t *out, const struct publish_target *target, uint64_t current);
 
 /* Removes release.json and timestamp.json of the earlier form, once a release was published in the
  * other alone. history/ and root/ stay. */

@@ -74,13 +74,24 @@ static int parse(const struct tuf_folder *folder, const char *name, enum tuf_typ
 	return rc == -ENOENT ? 0 : rc;
 }
 
+/* Parses a version of a role's file; 0: none. It must be there if is_named, by the file before it.
+ */
 static int parse_version(const struct tuf_folder *folder, uint64_t version, const char *role,
-			 enum tuf_type type, struct tuf_file *out)
+			 enum tuf_type type, bool is_named, struct tuf_file *out)
 {
 	char name[PATH_MAX];
+	int rc;
 
+	if (version == 0)
+		return 0;
 	snprintf(name, sizeof(name), "tuf/%" PRIu64 ".%s.json", version, role);
-	return version > 0 ? parse(folder, name, type, out) : 0;
+	rc = parse(folder, name, type, out);
+	return rc == 0 && is_named && !out->json
+		       ? complain(
+				 folder, name, -EBADMSG,
+				 "is missing, and terminals ask for it: bring it back from another "
+				 "copy of this folder")
+		       : rc;
 }
 
 /* ---- the chain */
@@ -96,6 +107,10 @@ static int follow_root(struct tuf_folder *folder, struct bytes bytes, const char
 				     tuf_root_role(&folder->root, TUF_ROOT));
 		*why = "not signed by the root before it";
 	}
+	if (rc == 0 && folder->root.json && next.version != folder->root.version + 1) {
+		rc = -EBADMSG;
+		*why = "says that it is another version";
+	}
 	if (rc < 0) {
 		tuf_file_finish(&next);
 		return rc;
@@ -105,21 +120,6 @@ static int follow_root(struct tuf_folder *folder, struct bytes bytes, const char
 	return 0;
 }
 
-static int open_root(struct tuf_folder *folder)
-{
-	if (rc == 0 && folder->root.json && next.version != folder->root.version + 1) {
-		rc = -EBADMSG;
-		*why = "says that it is another version";
-	}
-	const char *why = "cannot be read";
-	struct buffer file;
-	uint32_t version = 1;
-	int rc;
-
-	buffer_init(&file, TUF_FOLDER_FILE_BYTES_MAX);
-	while ((rc = keys_read_tuf_root(&file, folder->place.keys_folder, version)) == 0 &&
-	       (rc = follow_root(folder, buffer_bytes(&file), &why)) == 0)
-		version++;
 /* The release folder may have later roots than the keys' folder, after an exchange of keys that was
  * made elsewhere. Terminals follow them, so they say which keys may sign. */
 static int follow_published(struct tuf_folder *folder)
@@ -145,6 +145,17 @@ static int follow_published(struct tuf_folder *folder)
 	return 0;
 }
 
+static int open_root(struct tuf_folder *folder)
+{
+	const char *why = "cannot be read";
+	struct buffer file;
+	uint32_t version = 1;
+	int rc;
+
+	buffer_init(&file, TUF_FOLDER_FILE_BYTES_MAX);
+	while ((rc = keys_read_tuf_root(&file, folder->place.keys_folder, version)) == 0 &&
+	       (rc = follow_root(folder, buffer_bytes(&file), &why)) == 0)
+		version++;
 	buffer_finish(&file);
 	if (rc == -ENOENT && version > 1)
 		return follow_published(folder);
@@ -236,7 +247,7 @@ static int open_top(struct tuf_folder *folder)
 	int rc;
 
 	folder->top_version = snapshot_version(folder, "targets");
-	rc = parse_version(folder, folder->top_version, "targets", TUF_TARGETS, &folder->top);
+	rc = parse_version(folder, folder->top_version, "targets", TUF_TARGETS, true, &folder->top);
 	folder->top_is_signed =
 		rc == 0 && folder->top.json && is_signed(folder, &folder->top, TUF_TARGETS);
 	if (rc < 0 || !folder->top.json || folder->top_is_signed)
@@ -299,7 +310,7 @@ int tuf_folder_read_role(const struct tuf_folder *folder, const char *name, stru
 {
 	*out = (struct tuf_file){ .json = NULL };
 	*version = snapshot_version(folder, name);
-	return parse_version(folder, *version, name, TUF_TARGETS, out);
+	return parse_version(folder, *version, name, TUF_TARGETS, true, out);
 }
 
 static int open_own(struct tuf_folder *folder)
@@ -332,7 +343,7 @@ int tuf_folder_open(struct tuf_folder *out, const struct tuf_place *place)
 		rc = parse(out, "tuf/timestamp.json", TUF_TIMESTAMP, &out->timestamp);
 	meta = out->timestamp.json ? tuf_meta(&out->timestamp, "snapshot.json") : NULL;
 	if (rc == 0 && meta)
-		rc = parse_version(out, tuf_meta_version(meta), "snapshot", TUF_SNAPSHOT,
+		rc = parse_version(out, tuf_meta_version(meta), "snapshot", TUF_SNAPSHOT, true,
 				   &out->snapshot);
 	out->snapshot_is_signed =
 		rc == 0 && out->snapshot.json && is_signed(out, &out->snapshot, TUF_SNAPSHOT);
@@ -405,7 +416,7 @@ int tuf_folder_at(const struct tuf_folder *folder, uint64_t version, struct rele
 	const char *name = tuf_folder_naming_name(folder);
 	struct tuf_file naming = { 0 };
 	const cJSON *keys, *role;
-	int rc = parse_version(folder, version, name, TUF_TARGETS, &naming);
+	int rc = parse_version(folder, version, name, TUF_TARGETS, false, &naming);
 
 	*out = (struct release){ 0 };
 	tuf_folder_naming_keys(folder, &keys, &role);

@@ -349,6 +349,33 @@ static void going_over_to_one_form_needs_no_other_change(void **state)
 	check_valid(1);
 }
 
+/* What is named and not there is not the same as nothing published: numbers would begin again. */
+static void a_named_file_that_is_missing_is_not_a_new_folder(void **state)
+{
+	static const char *const names[] = { "1.snapshot.json", "1.targets.json" };
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+	char path[200], aside[200];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
+		for (int alone = 0; alone < 2; alone++) {
+			struct hash before;
+
+			target.tuf_alone = alone;
+			snprintf(path, sizeof(path), "%s/tuf/%s", tiny.release, names[i]);
+			snprintf(aside, sizeof(aside), "%s/aside", tiny.folder);
+			CHECK(rename(path, aside) == 0);
+			before = all_files();
+			CHECK(publish_again(&report, &target, 1) == -EBADMSG);
+			CHECK(hash_equal(all_files(), before));
+			CHECK(rename(aside, path) == 0);
+		}
+	CHECK(publish_again(&report, &target, 1) == 0 && report.release.sequence == 2);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -375,6 +402,8 @@ int main(void)
 						tear_down),
 		cmocka_unit_test_setup_teardown(going_over_to_one_form_needs_no_other_change, enter,
 						tear_down),
+		cmocka_unit_test_setup_teardown(a_named_file_that_is_missing_is_not_a_new_folder,
+						enter, tear_down),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
