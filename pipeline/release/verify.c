@@ -125,7 +125,7 @@ static int read_metadata(struct verify_walk *walk, const struct verify_options *
 		rc = check_expiry(walk, options->now_s, "timestamp.json",
 				  walk->report->timestamp.expires_s);
 	if (rc == 0) /* file holds release.json */
-		rc = verify_tuf(walk, buffer_bytes(&file), options->now_s);
+		rc = verify_tuf(walk, buffer_bytes(&file), options->target, options->now_s);
 	buffer_finish(&file);
 	return rc;
 }

@@ -12,7 +12,8 @@ static int complain(struct verify_walk *walk, int rc, const char *why)
 	return diagnostics_add(&walk->report->diagnostics, rc, "tuf", 0, "%s", why);
 }
 
-int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_s)
+int verify_tuf(struct verify_walk *walk, struct bytes release_file, const char *target,
+	       int64_t now_s)
 {
 	const uint32_t last = walk->report->release.tuf_root;
 	const struct bytes own = { NULL, 0 };
@@ -32,7 +33,7 @@ int verify_tuf(struct verify_walk *walk, struct bytes release_file, int64_t now_
 						   last);
 	}
 	buffer_clear(&file);
-	rc = tuf_reading_release(&reading, walk->reader, own, NULL, now_s, NULL, &file);
+	rc = tuf_reading_release(&reading, walk->reader, own, target, now_s, NULL, &file);
 	if (rc < 0)
 		complain(walk, rc, reading.why);
 	else if (!bytes_equal(buffer_bytes(&file), release_file))

@@ -349,6 +349,22 @@ static void going_over_to_one_form_needs_no_other_change(void **state)
 	check_valid(1);
 }
 
+static void a_target_of_another_path_is_verified_in_both_forms(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+
+	(void)state;
+	tiny_publish(&tiny, NULL);
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	target.tuf_target = "angkor/release.json";
+	for (int alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone;
+		CHECK(publish_again(&report, &target, alone ? 2 : 1) == 0);
+		check_valid_at(report.release.sequence, target.tuf_target);
+	}
+}
+
 /* What is named and not there is not the same as nothing published: numbers would begin again. */
 static void a_named_file_that_is_missing_is_not_a_new_folder(void **state)
 {
@@ -403,6 +419,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(going_over_to_one_form_needs_no_other_change, enter,
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_named_file_that_is_missing_is_not_a_new_folder,
+						enter, tear_down),
+		cmocka_unit_test_setup_teardown(a_target_of_another_path_is_verified_in_both_forms,
 						enter, tear_down),
 	};
 
