@@ -25,6 +25,8 @@ static const char help[] =
 	"  --expires DAYS   days after which terminals refuse to install this release (default: 1825)\n"
 	"  --undo           publish the previous release again, under a new number\n"
 	"  --sequence N     publish release N again, under a new number\n"
+	"  --above N        give this release a number above N: after a backup of the release folder was brought\n"
+	"                   back, terminals take only what is above all that they have seen\n"
 	"  --renew          build nothing: sign the timestamp anew, which is valid for 30 days, and with less\n"
 	"                   than two fifths of its days left the release too, under a new number\n"
 	"  --trust-clock    sign even if this machine's clock seems wrong: earlier than the last timestamp, or\n"
@@ -41,6 +43,8 @@ static const char help[] =
 	"Examples:\n"
 	"  gopura-content publish temple --comment 'new pages of the east gate'\n"
 	"  gopura-content publish temple --undo\n";
+
+enum { ABOVE_MOST = 1000000 }; /* earlier releases are looked for number by number */
 
 struct settings {
 	struct publish_content_options publish;
@@ -117,6 +121,7 @@ int command_publish(int argc, char **argv)
 		{ "expires", required_argument, NULL, 'e' },
 		{ "undo", no_argument, NULL, 'u' },
 		{ "sequence", required_argument, NULL, 's' },
+		{ "above", required_argument, NULL, 'A' },
 		{ "renew", no_argument, NULL, 'r' },
 		{ "trust-clock", no_argument, NULL, 't' },
 		{ "write-unsigned", required_argument, NULL, 'w' },
@@ -125,7 +130,7 @@ int command_publish(int argc, char **argv)
 		{ NULL, 0, NULL, 0 },
 	};
 	struct settings settings = { 0 };
-	uint64_t days;
+	uint64_t days, above;
 	int option;
 
 	while ((option = getopt_long(argc, argv, "", options, NULL)) >= 0) {
@@ -154,6 +159,13 @@ int command_publish(int argc, char **argv)
 						     "--sequence must be a release's number, not ",
 						     optarg);
 			break;
+		case 'A':
+			if (!command_number(optarg, 1, ABOVE_MOST, &above))
+				return command_wrong(argv[0],
+						     "--above must be a number up to 1000000, not ",
+						     optarg);
+			settings.publish.above = (uint32_t)above;
+			break;
 		case 'r':
 			settings.renew = true;
 			break;
@@ -181,6 +193,9 @@ int command_publish(int argc, char **argv)
 		return command_wrong(
 			argv[0], "give only one of --undo, --sequence, --renew and --add-signature",
 			"");
+	if (settings.publish.above > 0 && (settings.renew || settings.staged_folder))
+		return command_wrong(argv[0],
+				     "--above goes with neither --renew nor --add-signature", "");
 	if (settings.staged_folder && settings.publish.unsigned_folder)
 		return command_wrong(argv[0],
 				     "give only one of --write-unsigned and --add-signature", "");

@@ -148,9 +148,9 @@ static int renew_timestamp(const struct publish_target *target, const struct rel
 		if (rc == 0)
 			rc = release_tuf_write(&place, &same, buffer_bytes(&file),
 					       timestamp_life_s(target), target->unsigned_folder);
-		buffer_finish(&file);
 		if (rc == 0 && !target->unsigned_folder)
 			published_drop_earlier(target);
+		buffer_finish(&file);
 		return rc;
 	}
 	rc = release_files_renew(target->release, target->keys_folder, target->keys,

@@ -22,7 +22,10 @@ struct publish_target {
 	/* Where metadata of The Update Framework goes that is signed elsewhere; NULL: it is
 	 * published. With tuf_alone. */
 	const char *unsigned_folder;
-	bool trust_clock;       /* sign even if published_check_clock would refuse */
+	bool trust_clock; /* sign even if published_check_clock would refuse */
+	/* The next release gets a number above it, and is made even if nothing changed: terminals
+	 * may know higher ones than a folder that was restored from a backup. 0: there is none. */
+	uint32_t above;
 	const char *comment;    /* NULL: none. A changed comment alone also makes a new release. */
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 	int64_t timestamp_life_s; /* 0: TIMESTAMP_LIFE_DAYS */

@@ -62,6 +62,7 @@ static int destination_init(struct destination *destination, char release[PATH_M
 						       .tuf_role = content->tuf_role,
 						       .unsigned_folder = options->unsigned_folder,
 						       .trust_clock = options->trust_clock,
+						       .above = options->above,
 						       .comment = options->comment,
 						       .release_life_s = options->release_life_s };
 	if (!content->tuf_alone && (options->unsigned_folder || content->tuf_role[0])) {

@@ -18,6 +18,7 @@ struct publish_content_options {
 	const char *unsigned_folder;
 	int64_t release_life_s; /* 0: RELEASE_LIFE_DAYS */
 	bool trust_clock;       /* as struct publish_target has it */
+	uint32_t above;         /* likewise */
 };
 
 struct publish_content_report {

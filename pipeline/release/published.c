@@ -195,6 +195,8 @@ int published_next(uint64_t *out, const struct publish_target *target, uint64_t 
 	uint32_t root;
 	int rc = keys_last_tuf_root(&root, target->keys_folder);
 
+	if (target->above > current)
+		current = target->above;
 	*out = current + 1;
 	if (rc < 0 || root == 0)
 		return rc;

@@ -5,6 +5,7 @@
 #include <inttypes.h>
 #include <limits.h>
 #include <stdio.h>
+#include <unistd.h>
 
 #include "format/root_page.h"
 #include "pipeline/release/pack.h"
@@ -59,6 +60,17 @@ int release_look_trust(struct trust_root *out, const char *folder)
 	return rc;
 }
 
+/* Returns whether there is a version of the file that names releases. Numbers may be left out, many
+ * at once, and opening the folder for each would take long. */
+static bool has_version(const struct release_place *place, uint64_t sequence)
+{
+	char path[PATH_MAX];
+
+	return snprintf(path, sizeof(path), "%s/tuf/%" PRIu64 ".%s.json", place->folder, sequence,
+			place->role && *place->role ? place->role : "targets") >= PATH_MAX ||
+	       access(path, F_OK) == 0 || errno != ENOENT;
+}
+
 /* The roots of the release folder have the names of those in a keys' folder. */
 static int look_at_target(struct release *out, const struct release_place *where, uint64_t sequence,
 			  struct buffer *file)
@@ -68,7 +80,11 @@ static int look_at_target(struct release *out, const struct release_place *where
 					 .target = where->target,
 					 .role = where->role };
 	struct tuf_folder tuf;
-	int rc = tuf_folder_open(&tuf, &place);
+	int rc;
+
+	if (sequence > 0 && !has_version(where, sequence))
+		return -ENOENT;
+	rc = tuf_folder_open(&tuf, &place);
 
 	if (rc == 0)
 		rc = sequence > 0 ? tuf_folder_at(&tuf, sequence, out, file)

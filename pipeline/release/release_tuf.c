@@ -284,7 +284,7 @@ static int stage_timestamp(struct next *next, uint32_t snapshot)
 {
 	const struct tuf_file none = { .json = NULL };
 	const int64_t now_s = clock_wall_s();
-	const uint32_t version = next->folder.timestamp.version + 1;
+	const uint32_t last = next->folder.timestamp.version;
 	struct tuf_staged kept = { .name = "" };
 	const bool is_new = next->files[TUF_SNAPSHOT].name[0] != '\0';
 	cJSON *content;
@@ -294,10 +294,11 @@ static int stage_timestamp(struct next *next, uint32_t snapshot)
 		tuf_staged_finish(&kept);
 		return complain(next->folder.place.release, "tuf", rc);
 	}
-	content = naming(
-		tuf_next_content(&none, TUF_TIMESTAMP, version, now_s + next->timestamp_life_s),
-		"snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
-		!is_new || !next->unsigned_folder);
+	content = naming(tuf_next_content(&none, TUF_TIMESTAMP,
+					  last + 1 > snapshot ? last + 1 : snapshot,
+					  now_s + next->timestamp_life_s),
+			 "snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
+			 !is_new || !next->unsigned_folder);
 	/* A member of ours, which other clients ignore: terminals know then that it is not earlier.
 	 */
 	if (content && !cJSON_AddNumberToObject(content, "issued_s", (double)now_s))

@@ -349,6 +349,37 @@ static void going_over_to_one_form_needs_no_other_change(void **state)
 	check_valid(1);
 }
 
+/* Terminals have seen higher numbers than the backup has. */
+static void a_restored_folder_goes_on_above_what_terminals_have_seen(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	const struct tuf_place place = published_place(&target);
+	struct publish_report report;
+	struct tuf_folder folder;
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	for (int alone = 0; alone < 2; alone++) {
+		const uint32_t above = alone ? 5000 : 1000;
+
+		target.tuf_alone = alone;
+		target.above = above;
+		CHECK(publish_again(&report, &target, 1 + alone * 1000) == 0);
+		CHECK(report.release.sequence == above + 1);
+		check_valid(above + 1);
+		CHECK(tuf_folder_open(&folder, &place) == 0);
+		CHECK(folder.timestamp.version > above && folder.snapshot.version > above);
+		tuf_folder_finish(&folder);
+		target.above = 7; /* is no way back */
+		CHECK(publish_again(&report, &target, above + 1) == 0);
+		CHECK(report.release.sequence == above + 2);
+		target.above = 0;
+		CHECK(publish_renew(&report, &target) == 0 && !report.changed);
+		check_valid(above + 2);
+	}
+}
+
 static void a_target_of_another_path_is_verified_in_both_forms(void **state)
 {
 	struct publish_target target = tiny_target(&tiny);
@@ -422,6 +453,8 @@ int main(void)
 						enter, tear_down),
 		cmocka_unit_test_setup_teardown(a_target_of_another_path_is_verified_in_both_forms,
 						enter, tear_down),
+		cmocka_unit_test_setup_teardown(
+			a_restored_folder_goes_on_above_what_terminals_have_seen, enter, tear_down),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
