@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,16 +27,21 @@ static int fail(const struct diagnostics *diagnostics, int rc)
 	return rc;
 }
 
+static void put_state(struct buffer *text, const char *path, uint64_t bytes, struct timespec time)
+{
+	buffer_put_string(text, path);
+	buffer_put_u64(text, bytes);
+	buffer_put_u64(text, (uint64_t)time.tv_sec);
+	buffer_put_u32(text, (uint32_t)time.tv_nsec);
+}
+
 static void put_file(struct buffer *text, const char *path)
 {
 	struct stat info = { 0 };
 
 	if (stat(path, &info) < 0)
 		info = (struct stat){ 0 };
-	buffer_put_string(text, path);
-	buffer_put_u64(text, (uint64_t)info.st_size);
-	buffer_put_u64(text, (uint64_t)info.st_mtim.tv_sec);
-	buffer_put_u32(text, (uint32_t)info.st_mtim.tv_nsec);
+	put_state(text, path, (uint64_t)info.st_size, info.st_mtim);
 }
 
 static int is_shown(const struct dirent *entry)
@@ -43,17 +49,21 @@ static int is_shown(const struct dirent *entry)
 	return entry->d_name[0] != '.';
 }
 
-static void put_folder(struct buffer *text, const struct content *content, const char *name)
+/* With the folders in it, but for those behind links. */
+static void put_folder(struct buffer *text, const char *folder)
 {
-	char folder[CONTENT_PATH_BYTES + 16], path[CONTENT_PATH_BYTES + 300];
+	char path[PATH_MAX];
 	struct dirent **entries = NULL;
-	int count;
+	int count = scandir(folder, &entries, is_shown, alphasort);
 
-	snprintf(folder, sizeof(folder), "%s/%s", content->folder, name);
-	count = scandir(folder, &entries, is_shown, alphasort);
 	for (int i = 0; i < count; i++) {
-		snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name);
-		put_file(text, path);
+		struct stat info;
+
+		if (snprintf(path, sizeof(path), "%s/%s", folder, entries[i]->d_name) < PATH_MAX) {
+			put_file(text, path);
+			if (lstat(path, &info) == 0 && S_ISDIR(info.st_mode))
+				put_folder(text, path);
+		}
 		free(entries[i]);
 	}
 	free(entries);
@@ -80,8 +90,9 @@ static int make_stamp(struct hash *out, struct sources *sources,
 		      const struct build_options *options)
 {
 	const struct content *content = sources_content(sources);
-	static const char *const names[] = { "temple.ini", "parts.json", "tours.json",
-					     "scenes.json" };
+	static const char *const names[] = { "parts.json", "tours.json", "scenes.json" };
+	static const char *const folders[] = { "pages", "pictures", "regions", "scenes" };
+	char path[CONTENT_PATH_BYTES + 16];
 	struct diagnostics diagnostics = { 0 };
 	struct hash scans;
 	struct buffer text;
@@ -96,16 +107,16 @@ static int make_stamp(struct hash *out, struct sources *sources,
 	buffer_put_u64(&text, content->budget_bytes);
 	buffer_put_string(&text, options->out ? options->out : "");
 	buffer_put_string(&text, options->comment ? options->comment : "");
+	/* As it was read: somebody may have changed it since. */
+	put_state(&text, "temple.ini", content->settings_bytes, content->settings_time);
 	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
-		char path[CONTENT_PATH_BYTES + 16];
-
 		snprintf(path, sizeof(path), "%s/%s", content->folder, names[i]);
 		put_file(&text, path);
 	}
-	put_folder(&text, content, "pages");
-	put_folder(&text, content, "pictures");
-	put_folder(&text, content, "regions");
-	put_folder(&text, content, "scenes");
+	for (size_t i = 0; i < ARRAY_COUNT(folders); i++) {
+		snprintf(path, sizeof(path), "%s/%s", content->folder, folders[i]);
+		put_folder(&text, path);
+	}
 	*out = hash_of(buffer_bytes(&text));
 	if (rc == 0)
 		rc = text.error;

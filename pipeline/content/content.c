@@ -132,6 +132,7 @@ static int complete(struct content *content, struct diagnostics *diagnostics)
 int content_read(struct content *out, const char *folder, struct diagnostics *diagnostics)
 {
 	char ini[CONTENT_PATH_BYTES + 16];
+	struct stat status;
 	int rc;
 
 	*out = (struct content){ 0 };
@@ -140,6 +141,10 @@ int content_read(struct content *out, const char *folder, struct diagnostics *di
 				       "'%.100s' is no content folder; give one", folder);
 	set_defaults(out, folder);
 	snprintf(ini, sizeof(ini), "%s/temple.ini", out->folder);
+	if (stat(ini, &status) == 0) {
+		out->settings_bytes = (uint64_t)status.st_size;
+		out->settings_time = status.st_mtim;
+	}
 	rc = settings_read_file(ini, content_settings(), CONTENT_SETTINGS, out, diagnostics);
 	if (rc == 0)
 		rc = complete(out, diagnostics);

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <time.h>
 
 #include "base/diagnostics.h"
 #include "base/settings.h"
@@ -51,6 +52,8 @@ enum content_quality_rule {
 
 struct content {
 	char folder[CONTENT_PATH_BYTES]; /* as given, without a trailing slash */
+	uint64_t settings_bytes;         /* of temple.ini, looked at before it was read */
+	struct timespec settings_time;   /* likewise, when it was changed last */
 	char name[128];                  /* UTF-8; by default the name of the folder */
 	char *scans[CONTENT_SCANS_MAX];  /* paths including the folder; owned */
 	struct transform *transforms[CONTENT_SCANS_MAX]; /* of each scan; owned; NULL: none */

@@ -8,82 +8,15 @@
 
 #include "pipeline/estimate.h"
 #include "tests/check.h"
-#include "tests/pipeline/shapes.h"
-
-static char top[64], folder[80], keys[80];
-
-static void put_scan(void)
-{
-	struct mesh mesh = shape_temple(40);
-	char path[128];
-	FILE *file;
-
-	snprintf(path, sizeof(path), "%s/temple.ply", folder);
-	file = fopen(path, "w");
-	CHECK(file != NULL);
-	fprintf(file,
-		"ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\n"
-		"property float y\nproperty float z\nelement face %u\n"
-		"property list uchar uint vertex_indices\nend_header\n",
-		mesh.vertex_count, mesh.triangle_count);
-	fwrite(mesh.positions, sizeof(mesh.positions[0]), mesh.vertex_count, file);
-	for (uint32_t i = 0; i < mesh.triangle_count; i++) {
-		fputc(3, file);
-		fwrite(mesh.triangles[i], sizeof(mesh.triangles[0]), 1, file);
-	}
-	fclose(file);
-	mesh_finish(&mesh);
-}
-
-static void put_file(const char *name, const char *text)
-{
-	char path[128];
-	FILE *file;
-
-	snprintf(path, sizeof(path), "%s/%s", folder, name);
-	file = fopen(path, "w");
-	CHECK(file != NULL);
-	fputs(text, file);
-	fclose(file);
-}
-
-static int make_folder(void **state)
-{
-	(void)state;
-	snprintf(top, sizeof(top), "/tmp/gopura-estimate-XXXXXX");
-	if (!mkdtemp(top))
-		return -1;
-	snprintf(folder, sizeof(folder), "%s/content", top);
-	snprintf(keys, sizeof(keys), "%s/keys", top);
-	mkdir(folder, 0777);
-	put_scan();
-	put_file("temple.ini", "[model]\nscans = temple.ply\n[grid]\npoints = 4\nface_px = 256\n");
-	return 0;
-}
-
-static int remove_folder(void **state)
-{
-	char command[128];
-
-	(void)state;
-	snprintf(command, sizeof(command), "rm -rf %s", top);
-	return system(command);
-}
-
-static void read_content(struct content *content)
-{
-	struct diagnostics diagnostics = { 0 };
-
-	CHECK(content_read(content, folder, &diagnostics) == 0);
-}
+#include "tests/pipeline/temple_folder.h"
 
 static struct estimate estimate_now(void)
 {
-	const struct build_options options = { .keys = keys };
+	const struct build_options options = { .keys = temple.keys };
 	struct estimate estimate;
 	struct content content;
 
-	read_content(&content);
+	temple_read(&content);
 	CHECK(estimate_build(&estimate, &content, &options) == 0);
 	content_release(&content);
 	return estimate;
@@ -101,7 +34,7 @@ static void count_samples(uint64_t *faces, uint64_t *tiles)
 	struct sample_face face;
 
 	*faces = *tiles = 0;
-	CHECK(samples_store_open(&store, folder) == 0);
+	CHECK(samples_store_open(&store, temple.folder) == 0);
 	while (samples_store_next(store, &face) == 1) {
 		++*faces;
 		*tiles += face.tile_count;
@@ -111,7 +44,7 @@ static void count_samples(uint64_t *faces, uint64_t *tiles)
 
 static void predicts_counts_and_sizes(void **state)
 {
-	const struct build_options options = { .keys = keys };
+	const struct build_options options = { .keys = temple.keys };
 	struct estimate before = estimate_now(), after;
 	struct build_report report;
 	struct content content;
@@ -120,10 +53,10 @@ static void predicts_counts_and_sizes(void **state)
 
 	(void)state;
 	CHECK(before.work.is_counted && before.work.points_done == 0);
-	snprintf(path, sizeof(path), "%s/.work/samples", folder);
+	snprintf(path, sizeof(path), "%s/.work/samples", temple.folder);
 	CHECK(access(path, F_OK) < 0); /* nothing was built */
-	CHECK(access(keys, F_OK) < 0);
-	read_content(&content);
+	CHECK(access(temple.keys, F_OK) < 0);
+	temple_read(&content);
 	CHECK(build_content(&report, &content, &options) == 0);
 	content_release(&content);
 	CHECK(before.work.triangle_count == report.source_triangles);
@@ -175,18 +108,18 @@ static void prints_a_table(void **state)
 
 static void refuses_faults_of_the_content(void **state)
 {
-	const struct build_options options = { .keys = keys };
+	const struct build_options options = { .keys = temple.keys };
 	struct estimate estimate;
 	struct content content;
 
 	(void)state;
-	put_file("parts.json", "{");
-	read_content(&content);
+	temple_put("parts.json", "{");
+	temple_read(&content);
 	CHECK(estimate_build(&estimate, &content, &options) == -EINVAL);
 	content_release(&content);
-	put_file("parts.json", "{\"parts\":[]}");
-	put_file("temple.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
-	read_content(&content);
+	temple_put("parts.json", "{\"parts\":[]}");
+	temple_put("temple.ply", "ply\nformat ascii 1.0\nelement vertex 3\n");
+	temple_read(&content);
 	CHECK(estimate_build(&estimate, &content, &options) == -EBADMSG);
 	content_release(&content);
 }
@@ -199,5 +132,5 @@ int main(void)
 		cmocka_unit_test(refuses_faults_of_the_content),
 	};
 
-	return cmocka_run_group_tests(tests, make_folder, remove_folder);
+	return cmocka_run_group_tests(tests, temple_make, temple_remove);
 }

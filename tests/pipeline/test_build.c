@@ -1,0 +1,67 @@
+/* A build does nothing only where nothing has changed since the last one read its files. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "pipeline/build.h"
+#include "tests/check.h"
+#include "tests/pipeline/temple_folder.h"
+
+/* Builds what *content says, and releases it. Returns whether nothing had changed. */
+static bool nothing_changed(struct content *content)
+{
+	const struct build_options options = { .keys = temple.keys };
+	struct build_report report;
+
+	CHECK(build_content(&report, content, &options) == 0);
+	content_release(content);
+	return report.nothing_changed;
+}
+
+static bool nothing_changed_now(void)
+{
+	struct content content;
+
+	temple_read(&content);
+	return nothing_changed(&content);
+}
+
+static void settings_that_change_after_they_were_read_are_built_next(void **state)
+{
+	struct content content;
+
+	(void)state;
+	CHECK(!nothing_changed_now() && nothing_changed_now());
+	temple_put("temple.ini", TEMPLE_INI "[view]\ntools = light\n");
+	temple_read(&content);
+	temple_put("temple.ini", TEMPLE_INI "[view]\ntools = section\n");
+	CHECK(!nothing_changed(&content));
+	CHECK(!nothing_changed_now() && nothing_changed_now());
+}
+
+static void a_file_that_changes_in_a_folder_within_one_is_seen(void **state)
+{
+	char path[128];
+
+	(void)state;
+	snprintf(path, sizeof(path), "%s/pictures", temple.folder);
+	CHECK(mkdir(path, 0755) == 0);
+	snprintf(path, sizeof(path), "%s/pictures/east", temple.folder);
+	CHECK(mkdir(path, 0755) == 0);
+	temple_put("pictures/east/gate.jpg", "x");
+	CHECK(!nothing_changed_now() && nothing_changed_now());
+	temple_put("pictures/east/gate.jpg", "xx");
+	CHECK(!nothing_changed_now() && nothing_changed_now());
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(settings_that_change_after_they_were_read_are_built_next),
+		cmocka_unit_test(a_file_that_changes_in_a_folder_within_one_is_seen),
+	};
+
+	return cmocka_run_group_tests(tests, temple_make, temple_remove);
+}
