@@ -106,36 +106,50 @@ static void tell_orphan(const char *orphan, const char *content)
 			content, orphan, owner, orphan);
 }
 
+/* Sets out to the n-th folder of that name below base. */
+static int numbered(char out[PATH_MAX], const char *base, const char *name, unsigned n)
+{
+	const int size = n == 1 ? snprintf(out, PATH_MAX, "%s/%s", base, name)
+				: snprintf(out, PATH_MAX, "%s/%s-%u", base, name, n);
+
+	return size < PATH_MAX ? 0 : complain(name, -ENAMETOOLONG, "; give --keys FOLDER");
+}
+
 /* Chooses the folder below base: the one that names this content, or one that belongs to nobody, or
- * a new one. */
+ * a new one. Numbers may be left out: their keys were removed. */
 static int choose(char out[PATH_MAX], const char *base, const char *content)
 {
 	const char *name = content[1] ? strrchr(content, '/') + 1 : "root";
-	char unclaimed[PATH_MAX] = "", orphan[PATH_MAX] = "", owner[PATH_MAX];
+	char orphan[PATH_MAX] = "", owner[PATH_MAX];
+	unsigned unclaimed = 0, unused = 0;
 
 	for (unsigned n = 1; n <= SAME_NAMES_MAX; n++) {
-		int size = n == 1 ? snprintf(out, PATH_MAX, "%s/%s", base, name)
-				  : snprintf(out, PATH_MAX, "%s/%s-%u", base, name, n);
+		int rc = numbered(out, base, name, n);
 
-		if (size >= PATH_MAX)
-			return complain(content, -ENAMETOOLONG, "; give --keys FOLDER");
+		if (rc < 0)
+			return rc;
 		if (access(out, F_OK) < 0) {
-			if (unclaimed[0])
-				memcpy(out, unclaimed, PATH_MAX);
-			else
-				tell_orphan(orphan, content);
-			return 0;
+			unused = unused ? unused : n;
+			continue;
 		}
-		if (read_owner(owner, out) < 0) {
-			if (!unclaimed[0])
-				memcpy(unclaimed, out, PATH_MAX);
-		} else if (strcmp(owner, content) == 0) {
+		rc = read_owner(owner, out);
+		if (rc < 0 && rc != -ENOENT)
+			return complain(
+				out, rc,
+				"; it cannot be told whose keys these are: give --keys FOLDER");
+		if (rc < 0)
+			unclaimed = unclaimed ? unclaimed : n;
+		else if (strcmp(owner, content) == 0)
 			return 0;
-		} else if (access(owner, F_OK) < 0) {
+		else if (access(owner, F_OK) < 0)
 			memcpy(orphan, out, PATH_MAX);
-		}
 	}
-	return complain(content, -EMFILE, ": too many keys of that name; give --keys FOLDER");
+	if (!unclaimed && !unused)
+		return complain(content, -EMFILE,
+				": too many keys of that name; give --keys FOLDER");
+	if (!unclaimed)
+		tell_orphan(orphan, content);
+	return numbered(out, base, name, unclaimed ? unclaimed : unused);
 }
 
 /* ---- moving keys out of the content folder */
