@@ -174,7 +174,9 @@ int object_store_read(struct object_store *store, struct hash hash, struct buffe
 		rc = -EBADMSG;
 	if (rc < 0)
 		log_error("pipeline", "%s: %s", store->paths[object->file],
-			  rc == -EBADMSG ? "changed while it was published; run the command again"
+			  rc == -EBADMSG ? "changed while it was published, or is damaged: run "
+					   "`gopura-content build` again, and if that says the "
+					   "same, remove this file before"
 					 : strerror(-rc));
 	return rc;
 }
