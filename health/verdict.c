@@ -244,6 +244,25 @@ static void judge_server(struct verdict *verdict, const struct snapshot *snapsho
 	    "No response for %s%s%s.", gone, why[0] ? ": " : "", why);
 }
 
+/* Judges failed writes of the last day: a disk that was full for a while is not worn out. */
+static void judge_disk(struct verdict *verdict, const struct snapshot *snapshot)
+{
+	const double count = figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total");
+	const double ago_s =
+		(double)snapshot->taken_wall_s -
+		figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_at_seconds");
+	char ago[40];
+
+	if (!(count > 0) || !(ago_s < REFUSED_S))
+		return;
+	verdict_duration(ago, sizeof(ago), ago_s);
+	add(verdict, LEVEL_WARNING, "The disk cannot be written",
+	    "Downloads are not saved, so they may be missing after a power cut. The disk is "
+	    "full or worn out. Check the free space below; if there is enough, replace the "
+	    "card or disk.",
+	    "%.0f write%s failed, the last one %s ago.", count, count == 1 ? "" : "s", ago);
+}
+
 static void judge_content(struct verdict *verdict, const struct snapshot *snapshot)
 {
 	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_kiosk_connected") == 0 &&
@@ -252,13 +271,6 @@ static void judge_content(struct verdict *verdict, const struct snapshot *snapsh
 		add(verdict, LEVEL_WARNING, "The two programs are not connected",
 		    "Nothing new is downloaded or shown. Switch the terminal off and on.", "%s",
 		    "");
-	if (figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total") > 0)
-		add(verdict, LEVEL_WARNING, "The disk cannot be written",
-		    "Downloads are not saved, so they may be missing after a power cut. The disk is "
-		    "full or worn out. Check the free space below; if there is enough, replace the "
-		    "card or disk.",
-		    "%.0f writes failed.",
-		    figure(snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_total"));
 }
 
 /* ---- the machine */
@@ -345,6 +357,7 @@ void verdict_judge(struct verdict *out, const struct snapshot *snapshot)
 	judge_picture(out, snapshot);
 	judge_server(out, snapshot);
 	judge_content(out, snapshot);
+	judge_disk(out, snapshot);
 	judge_refusal(out, snapshot);
 	judge_trust(out, snapshot);
 	judge_machine(out, snapshot);

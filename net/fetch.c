@@ -52,6 +52,8 @@ struct fetch {
 	struct cache *cache;
 	struct link link;
 	struct metrics_refusal refusal; /* the last refusal of something from the server */
+	uint64_t refused_writes;        /* of the cache, as they were seen last */
+	int64_t refused_write_s;        /* wall clock then */
 	struct downloader *downloader;
 	struct poll *poll;
 	struct asked_file *asked;
@@ -332,7 +334,11 @@ static void write_metrics(void *data, struct buffer *out)
 	metrics_gauge(out, "gopura_fetch_cache_budget_bytes", "Maximum size of the cache.",
 		      (double)cache_budget_bytes(fetch->cache));
 	metrics_counter(out, "gopura_fetch_cache_refused_total", "Failed writes to the cache.",
-			(double)cache_refused_writes(fetch->cache));
+			(double)fetch->refused_writes);
+	if (fetch->refused_writes > 0)
+		metrics_gauge(out, "gopura_fetch_cache_refused_at_seconds",
+			      "Time of the last failed write to the cache.",
+			      (double)fetch->refused_write_s);
 	write_refusal(&fetch->refusal, out);
 }
 
@@ -351,6 +357,15 @@ static void flush_cache(struct fetch *fetch)
 	fetch->flush_ms = INT64_MAX;
 	if (cache_flush(fetch->cache) < 0)
 		log_debug("net", "the last objects were not cached");
+}
+
+static void note_refused_writes(struct fetch *fetch)
+{
+	const uint64_t refused = cache_refused_writes(fetch->cache);
+
+	if (refused != fetch->refused_writes)
+		fetch->refused_write_s = clock_wall_s();
+	fetch->refused_writes = refused;
 }
 
 static void work(struct fetch *fetch)
@@ -373,6 +388,7 @@ static void work(struct fetch *fetch)
 		disconnect_kiosk(fetch, "so that it asks again");
 	}
 	flush_cache(fetch);
+	note_refused_writes(fetch);
 	waits = fetch->has_kiosk && packets_wait(&fetch->kiosk);
 	if (waits != fetch->kiosk_waits &&
 	    watch(fetch, fetch->kiosk.fd, SOURCE_KIOSK, EPOLLIN | (waits ? EPOLLOUT : 0u),

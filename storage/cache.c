@@ -220,7 +220,10 @@ static bool ready_to_store(struct cache *cache)
 {
 	const bool ready = cache_ready(cache);
 
-	cache->has_lost = cache->has_lost || !ready;
+	if (!ready) {
+		cache->figures.refused_writes++;
+		cache->has_lost = true;
+	}
 	return ready;
 }
 
@@ -236,10 +239,12 @@ static int put_row(struct cache *cache, sqlite3_stmt *put, size_t bytes)
 	rc = cache_reserve_pages(cache, pages);
 	if (rc == 0)
 		rc = put_with_room(cache, put, pages);
+	if (rc == -EDQUOT) /* the budget is to blame, not the disk */
+		return -ENOSPC;
 	if (rc < 0) {
 		cache->figures.refused_writes++;
-		cache->has_lost = cache->has_lost || rc != -EDQUOT;
-		return rc == -EDQUOT ? -ENOSPC : rc;
+		cache->has_lost = true;
+		return rc;
 	}
 	return cache_count_pages(cache, pages);
 }

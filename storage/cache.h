@@ -77,9 +77,11 @@ bool cache_needs_flush(const struct cache *cache);
 
 /* Returns the budget that a cache in a folder keeps to: at most 60 % of the file system. */
 uint64_t cache_budget_in(const char *folder, uint64_t budget_bytes);
-uint64_t cache_budget_bytes(const struct cache *cache);   /* the one that is kept */
-uint64_t cache_refused_writes(const struct cache *cache); /* since cache_create */
-uint64_t cache_file_bytes(const struct cache *cache);     /* current size of PATH and PATH-wal */
+uint64_t cache_budget_bytes(const struct cache *cache); /* the one that is kept */
+/* How often the disk did not take what was to be stored, since cache_create; also where the file
+ * cannot even be opened. */
+uint64_t cache_refused_writes(const struct cache *cache);
+uint64_t cache_file_bytes(const struct cache *cache); /* current size of PATH and PATH-wal */
 /* Sets all figures. It counts rows, so do not call it every second. */
 void cache_figures(struct cache *cache, struct cache_figures *out);
 

@@ -165,8 +165,14 @@ static void programs_that_do_not_meet_and_a_disk_that_refuses_are_remarks(void *
 	CHECK(finds(LEVEL_WARNING, "not connected"));
 	set_text(&snapshot, PROGRAM_FETCH, WELL_FETCH);
 	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_cache_ref",
-	       "gopura_fetch_cache_refused_total 3");
+	       "gopura_fetch_cache_refused_total 3\n"
+	       "gopura_fetch_cache_refused_at_seconds 1699999400");
 	CHECK(finds(LEVEL_WARNING, "disk cannot be written"));
+	CHECK(strcmp(verdict.findings[0].detail, "3 writes failed, the last one 10 minutes ago.") ==
+	      0);
+	change(&snapshot, PROGRAM_FETCH, "gopura_fetch_cache_refused_at",
+	       "gopura_fetch_cache_refused_at_seconds 1699913600");
+	CHECK(finds_nothing()); /* a disk that was full for a while is not worn out */
 }
 
 static void heat_and_want_of_memory_have_two_degrees(void **state)
