@@ -30,7 +30,7 @@
 #include "tuf/tuf_metadata.h"
 
 enum {
-	FLIP_MOST_MS = 3000, /* longest wait for a frame; the first mode set is slow */
+	FLIP_MOST_MS = 8000, /* longest wait for a frame; the first mode set is slow */
 	STATE_ROOM_MIB = 16, /* state.db, its journal and its second copy, with a large margin */
 	PROBE_BYTES = 4096,
 };

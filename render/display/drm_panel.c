@@ -16,7 +16,8 @@
 #include "render/display/uevent.h"
 
 enum {
-	FLIP_TIMEOUT_MS = 1000,
+	FLIP_MOST_MS = 1000,
+	MODE_MOST_MS = 5000, /* of one that sets the mode: some panels take a second to switch on */
 	RETRY_MS = 250,
 	LOOK_AWAY_MS = 2000,  /* probes every connector, which takes tens of milliseconds */
 	LOOK_SHOWN_MS = 5000, /* for drivers without hot-plug events; probes no connector */
@@ -147,7 +148,7 @@ int drm_panel_wait_ms(const struct drm_panel *panel)
 	int64_t due_ms = panel->asleep ? 0 : earlier(panel->look_ms, panel->retry_ms), left_ms;
 
 	if (panel->flip_pending && !panel->away)
-		due_ms = earlier(due_ms, panel->flip_asked_ms + FLIP_TIMEOUT_MS + 1);
+		due_ms = earlier(due_ms, panel->flip_asked_ms + panel->flip_most_ms + 1);
 	if (due_ms == 0)
 		return -1;
 	left_ms = due_ms - clock_now_ms();
@@ -240,10 +241,11 @@ int drm_panel_dispatch(struct drm_panel *panel, bool *flipped)
 			panel->taken = false;
 	}
 	if (panel->flip_pending && !panel->away &&
-	    clock_now_ms() - panel->flip_asked_ms > FLIP_TIMEOUT_MS) {
+	    clock_now_ms() - panel->flip_asked_ms > panel->flip_most_ms) {
 		if (seems_changed(panel)) /* and no event said so yet */
 			return look(panel, false);
-		log_error("render", "board bug: a page flip did not complete within a second");
+		log_error("render", "board bug: a page flip did not complete within %lld s",
+			  (long long)panel->flip_most_ms / 1000);
 		return -ETIMEDOUT;
 	}
 	return 0;
@@ -309,6 +311,7 @@ int drm_panel_show(struct drm_panel *panel, uint32_t fb, bool *shown)
 	panel->taken_said = false;
 	panel->refusals = 0;
 	panel->busy_since_ms = 0;
+	panel->flip_most_ms = panel->mode_is_set ? FLIP_MOST_MS : MODE_MOST_MS;
 	panel->mode_is_set = true;
 	panel->flip_pending = true;
 	panel->flip_asked_ms = clock_now_ms();

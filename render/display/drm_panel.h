@@ -15,7 +15,7 @@ struct drm_panel {
 	bool away, asleep, taken;        /* the reasons why nothing is shown */
 	bool taken_said;                 /* taken was logged; reset when a picture is shown */
 	bool mode_is_set, flip_pending, stale;
-	int64_t flip_asked_ms;
+	int64_t flip_asked_ms, flip_most_ms; /* when it was asked for, and how long it may take */
 	int64_t look_ms; /* when to check the connector next, unless the kernel reports a change */
 	int64_t retry_ms;
 	int64_t busy_since_ms; /* the card says so although no other program has it; 0: it does not
@@ -35,7 +35,7 @@ int drm_panel_fd(const struct drm_panel *panel);
 /* Returns the milliseconds until drm_panel_dispatch has work; -1: no limit. */
 int drm_panel_wait_ms(const struct drm_panel *panel);
 /* Handles flips, hot-plug and retries. *flipped: the last picture is on the panel, and the buffer
- * of the one before it is free. -ETIMEDOUT: a flip did not complete within a second; the panel or
+ * of the one before it is free. -ETIMEDOUT: a flip did not complete in time; the panel or
  * its driver hangs. -ESTALE: another panel, whose size differs; the process must start again. */
 must_check int drm_panel_dispatch(struct drm_panel *panel, bool *flipped);
 

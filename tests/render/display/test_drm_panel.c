@@ -202,10 +202,29 @@ static void a_flip_that_hangs_is_a_fault(void **state)
 	bool flipped;
 
 	(void)state;
+	show_and_flip();
 	show(true);
 	CHECK(drm_panel_wait_ms(&panel) == 1001);
 	now_ms += 1001;
 	CHECK(drm_panel_wait_ms(&panel) == 0);
+	CHECK(drm_panel_dispatch(&panel, &flipped) == -ETIMEDOUT);
+}
+
+static void a_panel_may_take_seconds_to_switch_on(void **state)
+{
+	bool flipped;
+
+	(void)state;
+	show(true);
+	for (int i = 0; i < 4; i++) {
+		now_ms += 1200;
+		CHECK(!turn());
+	}
+	card.flip_done = true;
+	CHECK(turn());
+	CHECK(drm_panel_sleep(&panel, true) == 0 && drm_panel_sleep(&panel, false) == 0);
+	show(true);
+	now_ms += 5001;
 	CHECK(drm_panel_dispatch(&panel, &flipped) == -ETIMEDOUT);
 }
 
@@ -438,6 +457,7 @@ static void wakes_to_another_panel(void **state)
 static void a_flip_may_hang_for_want_of_a_panel(void **state)
 {
 	(void)state;
+	show_and_flip();
 	show(true);
 	card.connected = false; /* of which there was no event */
 	card.news = DRM_CARD_NO_PANEL;
@@ -471,6 +491,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		CASE(sets_the_mode_once),
 		CASE(a_flip_that_hangs_is_a_fault),
+		CASE(a_panel_may_take_seconds_to_switch_on),
 		CASE(waits_for_a_panel_that_goes_and_comes),
 		CASE(starts_without_a_panel),
 		CASE(another_panel_asks_for_another_process),
