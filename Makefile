@@ -278,6 +278,7 @@ $(BUILD)/tests/bench/%: $(BUILD)/obj/tests/bench/%.o $(BENCH_PARTS) $(ARCHIVE) |
 	@mkdir -p $(@D)
 	$(LINK)
 $(BUILD)/tests/render/scene/test_scene: EXTRA += -Wl,--wrap=map_set
+$(BUILD)/tests/app/test_fingers: EXTRA += -Wl,--wrap=scene_pick,--wrap=scene_part
 $(BUILD)/tests/storage/test_powercut: EXTRA += $(addprefix -Wl$(comma)--wrap=,mkostemp write fsync close rename unlink)
 $(BUILD)/tests/storage/test_state: EXTRA += -Wl,--wrap=open,--wrap=realloc
 $(BUILD)/tests/pipeline/content/test_scan_surface: EXTRA += -Wl,--wrap=fsync

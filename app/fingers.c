@@ -67,6 +67,20 @@ static void on_press(struct fingers *fingers, const struct gesture *gesture)
 		grab(fingers, gesture->x_px, gesture->y_px);
 }
 
+/* Whether a tap is meant that lands on this. Many visitors tap a control twice: the second tap
+ * would undo what the first has done, or hit what lay under it. */
+static bool is_meant(struct fingers *fingers, enum gesture_kind gesture,
+		     enum overlay_action_kind kind)
+{
+	const enum overlay_action_kind before = fingers->tapped;
+
+	fingers->tapped = kind;
+	if (gesture == GESTURE_TAP || before == OVERLAY_NONE)
+		return true;
+	return kind == before && (kind == OVERLAY_SWALLOWED || kind == OVERLAY_KEY ||
+				  kind == OVERLAY_BACK || kind == OVERLAY_PICTURE);
+}
+
 static void on_tap(struct fingers *fingers, const struct gesture *gesture)
 {
 	const struct actions *actions = fingers->env.actions;
@@ -76,6 +90,8 @@ static void on_tap(struct fingers *fingers, const struct gesture *gesture)
 	if (!overlay)
 		return;
 	action = overlay_tap(overlay, gesture->x_px, gesture->y_px);
+	if (!is_meant(fingers, gesture->kind, action.kind))
+		return;
 	if (action.kind == OVERLAY_SWALLOWED && gesture->kind == GESTURE_DOUBLE_TAP &&
 	    overlay_picture(overlay) >= 0)
 		overlay_picture_double_tap(overlay, gesture->x_px, gesture->y_px);

@@ -29,6 +29,7 @@ struct fingers {
 	bool holds;       /* the gesture drags scenery, such as a bolt, and not the eye */
 	bool on_words;    /* the gesture began on the overlay, such as a page or card */
 	uint32_t on_keys; /* bit mask of contacts */
+	enum overlay_action_kind tapped; /* what the last tap meant */
 };
 
 /* Copies env; the viewport's px_per_mm must be set. */
