@@ -232,11 +232,14 @@ static void default_colour_of(const struct import_options *options, uint8_t rgb[
 
 /* Removes colours that will not be shown. This must happen before equal vertices are merged,
  * because such colours would keep vertices apart. */
-static void drop_colours(struct mesh *mesh, const struct import_options *options)
+static void drop_colours(struct mesh *mesh, const struct import_options *options,
+			 const struct import_report *report)
 {
-	if (options->override_colour)
+	/* Colours of vertices are nearer to pictures that cannot be read than one for all. */
+	if (options->override_colour ||
+	    (report->textures == 0 && report->had_colours && mesh->colours))
 		drop_textures(mesh);
-	else if (!mesh->textures)
+	if (!options->override_colour && !mesh->textures)
 		return;
 	for (uint32_t i = 0; mesh->colours && i < mesh->vertex_count; i++)
 		memset(mesh->colours[i], 255, 3);
@@ -292,7 +295,7 @@ static int finish(struct mesh *mesh, const char *path, bool is_indexed,
 	int rc;
 
 	rc = convert(mesh, is_indexed, options);
-	drop_colours(mesh, options);
+	drop_colours(mesh, options, report);
 	if (rc == 0)
 		rc = mesh_repair(mesh, import_jobs(options), &report->repairs);
 	if (rc == 0)

@@ -553,6 +553,29 @@ static void a_missing_or_damaged_picture_is_a_warning(void **state)
 	}
 }
 
+/* MeshLab writes both. */
+static void without_its_picture_a_ply_has_the_colours_of_its_vertices(void **state)
+{
+	static const char ply[] =
+		"ply\nformat ascii 1.0\ncomment TextureFile gone.png\nelement vertex 3\n"
+		"property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+		"property uchar green\nproperty uchar blue\nelement face 1\n"
+		"property list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+		"end_header\n0 0 0 10 20 30\n1 0 0 10 20 30\n0 1 0 40 50 60\n"
+		"3 0 1 2 6 0 0 1 0 0 1\n";
+	const struct import_options options = { 0 };
+	struct diagnostics diagnostics;
+	struct import_report report;
+	struct mesh mesh;
+	(void)state;
+
+	CHECK(import_text(&mesh, &report, "both.ply", ply, &options, &diagnostics) == 0);
+	CHECK(strstr(report.warning.first.text, "'gone.png' is not beside it"));
+	CHECK(report.textures == 0 && report.had_colours && !mesh.textures && !mesh.uvs);
+	CHECK(mesh.vertex_count == 3 && mesh.colours[0][0] == 10 && mesh.colours[2][2] == 60);
+	mesh_finish(&mesh);
+}
+
 static void what_was_left_out_is_a_warning(void **state)
 {
 	static const struct {
@@ -845,6 +868,7 @@ int main(void)
 		cmocka_unit_test(gltf_multiplies_colours_with_the_colour),
 		cmocka_unit_test(a_small_scan_is_read_beside_a_large_one),
 		cmocka_unit_test(a_missing_or_damaged_picture_is_a_warning),
+		cmocka_unit_test(without_its_picture_a_ply_has_the_colours_of_its_vertices),
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),
 		cmocka_unit_test(refuses_what_is_no_surface),
