@@ -3,6 +3,7 @@
  * once. */
 #include "pipeline/samples/sample_store.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <limits.h>
 #include <math.h>
@@ -652,6 +653,50 @@ int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 	buffer_finish(&file);
 	buffer_finish(&old);
 	return rc;
+}
+
+/* Whether a name is that of some point's file, of this grid or another; not of one half written. */
+static bool is_point_name(const char *name)
+{
+	unsigned number[4];
+	int end = 0;
+
+	if (sscanf(name, "%2u-%2u-%2u%n", &number[0], &number[1], &number[2], &end) < 3)
+		sscanf(name, "at-%8x-%8x-%8x-%6x%n", &number[0], &number[1], &number[2], &number[3],
+		       &end);
+	return end > 0 && name[end] == '\0';
+}
+
+static bool has_point_named(const char *dir, const struct sample_grid *grid, const char *name)
+{
+	uint32_t point[3];
+	char path[PATH_MAX];
+
+	if (sscanf(name, "%2u-%2u-%2u", &point[0], &point[1], &point[2]) == 3)
+		return is_on_grid(grid, point);
+	for (uint32_t i = 0; i < grid->vantage_count; i++) {
+		sample_grid_point(grid, points_on_grid(grid) + i, point);
+		point_path(path, dir, grid, point);
+		if (strcmp(strrchr(path, '/') + 1, name) == 0)
+			return true;
+	}
+	return false;
+}
+
+void samples_store_sweep(const char *content_dir, const struct sample_grid *grid)
+{
+	char dir[PATH_MAX - 64];
+	struct dirent *entry;
+	DIR *entries;
+
+	if (samples_dir(dir, sizeof(dir), content_dir) < 0)
+		return;
+	entries = opendir(dir);
+	while (entries && (entry = readdir(entries)))
+		if (is_point_name(entry->d_name) && !has_point_named(dir, grid, entry->d_name))
+			unlinkat(dirfd(entries), entry->d_name, 0);
+	if (entries)
+		closedir(entries);
 }
 
 int samples_store_put(const char *content_dir, struct hash key, const struct sample_grid *grid,

@@ -118,6 +118,9 @@ void samples_store_states(const struct samples_store *store, uint32_t counts[SAM
 /* Writes `grid`, unless it has the same bytes already. Creates the folders. */
 must_check int samples_store_begin(const char *content_dir, const struct sample_grid *grid,
 				   struct hash key);
+/* Removes the files of points that the grid does not have, those of other first views and of a grid
+ * with more points. Nothing else is touched; what cannot be removed stays. */
+void samples_store_sweep(const char *content_dir, const struct sample_grid *grid);
 /* Opens the store though points may be missing, and looks at none of them. Errors as above. */
 must_check int samples_store_look(struct samples_store **out, const char *content_dir);
 /* Returns true if the point's file exists, is complete and has the key of the grid. */

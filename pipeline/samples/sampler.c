@@ -443,6 +443,8 @@ static int sample(struct sampling *sampling, struct scans *scans,
 			rc = render(sampling, jobs);
 		model_destroy(sampling->model);
 	}
+	if (rc == 0 && options->shard.count <= 1)
+		samples_store_sweep(sampling->content->folder, &sampling->grid);
 	free(sampling->points);
 	return rc;
 }

@@ -422,6 +422,52 @@ static void makes_only_what_is_missing(void **state)
 	compare_files(dir[0], dir[1]);
 }
 
+static uint32_t count_points(void)
+{
+	char path[256];
+	uint32_t count = 0;
+	DIR *entries;
+
+	snprintf(path, sizeof(path), "%s/.work/samples", dir[0]);
+	entries = opendir(path);
+	CHECK(entries != NULL);
+	while (readdir(entries))
+		count++;
+	closedir(entries);
+	return count;
+}
+
+/* Files of other first views and of larger grids are of no use; nothing else is removed. */
+static void removes_points_that_the_grid_does_not_have(void **state)
+{
+	static const struct {
+		const char *name;
+		bool stays;
+	} files[] = {
+		{ "05-05-03", true },        { "06-00-00", false },
+		{ "00-00-31", false },       { "at-00000000-3f800000-40000000-102030", false },
+		{ "00-00-31.Ab3dEf", true }, { "05-05-03.txt", true },
+		{ "at-home", true },
+	};
+	char path[256];
+	uint32_t counts[2] = { 0 };
+
+	(void)state;
+	for (size_t i = 1; i < ARRAY_COUNT(files); i++) {
+		snprintf(path, sizeof(path), "%s/.work/samples/%s", dir[0], files[i].name);
+		CHECK(bytes_write_file((struct bytes){ (const uint8_t *)"x", 1 }, path) == 0);
+	}
+	counts[0] = count_points();
+	sample(dir[0], 2, 0, 1);
+	counts[1] = count_points();
+	for (size_t i = 0; i < ARRAY_COUNT(files); i++) {
+		snprintf(path, sizeof(path), "%s/.work/samples/%s", dir[0], files[i].name);
+		if ((access(path, F_OK) == 0) != files[i].stays)
+			fail_msg("%s", files[i].name);
+	}
+	assert_int_equal(counts[1] + 3, counts[0]);
+}
+
 /* A child that fails is not told as an error of the disk, whatever it was. */
 static void tells_why_a_child_failed(void **state)
 {
@@ -494,6 +540,7 @@ int main(void)
 		cmocka_unit_test(aprons_continue_into_the_neighbour),
 		cmocka_unit_test(shards_add_up_to_the_whole),
 		cmocka_unit_test(makes_only_what_is_missing),
+		cmocka_unit_test(removes_points_that_the_grid_does_not_have),
 		cmocka_unit_test(tells_why_a_child_failed),
 		cmocka_unit_test(knows_samples_of_other_settings),
 	};
