@@ -239,7 +239,7 @@ static void check_together(const struct terminal *t, const unsigned *lines,
 			diagnostics, -EINVAL, NULL, 0,
 			"section [release] has no trust; copy the release's root/1.json beside "
 			"this file and add trust = 1.json");
-	if (t->gateway[0] && !lines[AT_ADDRESS])
+	if (t->gateway[0] && (!lines[AT_ADDRESS] || t->is_dhcp))
 		diagnostics_add(diagnostics, -EINVAL, NULL, lines[AT_GATEWAY],
 				"gateway needs a static address; add one, such as address = "
 				"192.168.1.20/24, or remove gateway");

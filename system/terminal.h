@@ -63,6 +63,7 @@ struct terminal {
 	uint32_t wake_min;
 	bool shift; /* pixels are shifted now and then; true if the file does not set it */
 	/* [network] */
+	bool is_dhcp;                   /* the file says so; without an address it is too */
 	bool is_static;                 /* true: address and prefix_bits are valid; false: DHCP */
 	char address[INET6_ADDRSTRLEN]; /* without the prefix length */
 	uint32_t prefix_bits;

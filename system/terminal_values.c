@@ -227,7 +227,8 @@ bool terminal_set_address(const struct setting *setting, void *target, const cha
 	uint32_t host;
 
 	(void)setting;
-	if (strcasecmp(value, "dhcp") == 0)
+	terminal->is_dhcp = strcasecmp(value, "dhcp") == 0;
+	if (terminal->is_dhcp)
 		return true;
 	if (!slash || (size_t)(slash - value) >= sizeof(address) || !slash[1] ||
 	    !only(slash + 1, DIGITS) || strlen(slash) > 4)

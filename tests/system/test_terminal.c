@@ -292,6 +292,10 @@ static void sees_what_does_not_fit_together(void **state)
 	CHECK(diagnostics.count == 0);
 	parse(RELEASE "[network]\ngateway = 192.168.2.1\n");
 	says_only("line 5: gateway needs a static address");
+	parse(RELEASE "[network]\naddress = dhcp\ngateway = 192.168.2.1\n");
+	says_only("line 6: gateway needs a static address");
+	parse(RELEASE "[network]\naddress = 192.168.2\ngateway = 192.168.2.1\n");
+	says_only("line 5: address must be dhcp");
 	parse(RELEASE "[health]\nmdns = yes\n");
 	says_only("line 5: mdns announces the health page, but");
 	parse(RELEASE "[health]\nmdns = yes\nlisten = [::1]:9100\n");
