@@ -15,6 +15,9 @@ enum { STACK_BYTES = 256 << 10 };
 
 /* running threads, plus descriptors for which no thread could be started */
 static atomic_uint running;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; /* of the next two */
+static int waiting[CLOSER_THREADS_MAX];                  /* for a thread */
+static unsigned waiting_count;
 
 static void *close_one(void *data)
 {
@@ -39,6 +42,20 @@ static int start_thread(int fd)
 	return rc;
 }
 
+/* Starts the threads that could not be started before. Returns 0 if none is left. */
+static int start_waiting(void)
+{
+	int rc = 0;
+
+	pthread_mutex_lock(&lock);
+	while (rc == 0 && waiting_count > 0) {
+		rc = start_thread(waiting[waiting_count - 1]);
+		waiting_count -= rc == 0;
+	}
+	pthread_mutex_unlock(&lock);
+	return rc;
+}
+
 void closer_close(int fd)
 {
 	int rc;
@@ -46,13 +63,19 @@ void closer_close(int fd)
 	if (fd < 0)
 		return;
 	atomic_fetch_add(&running, 1);
-	rc = start_thread(fd);
-	if (rc < 0) /* the descriptor stays open; that is better than a loop that hangs */
+	pthread_mutex_lock(&lock);
+	if (waiting_count < CLOSER_THREADS_MAX) /* else it stays open */
+		waiting[waiting_count++] = fd;
+	pthread_mutex_unlock(&lock);
+	rc = start_waiting();
+	if (rc < 0) /* an open descriptor is better than a loop that hangs */
 		log_error("net", "cannot start the thread that closes descriptors: %s",
 			  strerror(-rc));
 }
 
 bool closer_is_full(void)
 {
+	if (start_waiting() < 0)
+		log_debug("net", "there is still no thread that closes descriptors");
 	return atomic_load(&running) >= CLOSER_THREADS_MAX;
 }

@@ -10,8 +10,9 @@ enum { CLOSER_THREADS_MAX = 16 };
 
 /* fd is taken. Does nothing if fd is negative. */
 void closer_close(int fd);
-/* Returns true when CLOSER_THREADS_MAX descriptors hang in close(). Whoever caused this should get
- * no new connection, because each one may add another thread and descriptor. */
+/* Returns true when CLOSER_THREADS_MAX descriptors hang in close(), or wait for a thread that could
+ * not be started; that is tried again first. Whoever caused this should get no new connection,
+ * because each one may add another thread and descriptor. */
 bool closer_is_full(void);
 
 #endif
