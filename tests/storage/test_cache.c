@@ -326,6 +326,38 @@ static void gives_the_disk_back_when_the_budget_shrinks(void **state)
 	cache_destroy(cache);
 }
 
+static void unkeeps_nothing_where_a_write_fails_while_it_shrinks(void **state)
+{
+	struct cache *cache = open_cache(16 << 20);
+	struct cache_figures figures;
+	struct buffer file;
+	long writes = 1;
+
+	(void)state;
+	for (uint32_t n = 0; n < 600; n++) {
+		CHECK(put(cache, n, 20000, 0) == 0);
+		if (n % 30 == 0)
+			CHECK(cache_keep(cache, hash_of(object(n, 20000))) == 0);
+	}
+	cache_destroy(cache);
+	buffer_init(&file, 16 << 20);
+	CHECK(buffer_read_file(&file, path) == 0);
+	for (long at = 0; at < writes; at += 1 + writes / 100) {
+		CHECK(bytes_write_file(buffer_bytes(&file), path) == 0);
+		fault_set(FAULT_FULL, at, 1);
+		cache = open_cache(5 << 20);
+		writes = fault.writes > writes ? fault.writes : writes;
+		fault_set(FAULT_NONE, 0, 0);
+		now_ms += 60000;
+		CHECK(get(cache, 30, 20000) == 0);
+		cache_figures(cache, &figures);
+		CHECK(figures.kept_bytes == 20 * 20000);
+		cache_destroy(cache);
+	}
+	CHECK(writes > 100);
+	buffer_finish(&file);
+}
+
 static void refuses_what_can_never_fit(void **state)
 {
 	struct cache *cache = open_cache(CACHE_BUDGET_MIN);
@@ -722,6 +754,7 @@ int main(void)
 		IN_A_FOLDER(keeps_both_releases_across_a_return),
 		IN_A_FOLDER(keeps_no_more_than_three_quarters),
 		IN_A_FOLDER(gives_the_disk_back_when_the_budget_shrinks),
+		IN_A_FOLDER(unkeeps_nothing_where_a_write_fails_while_it_shrinks),
 		IN_A_FOLDER(refuses_what_can_never_fit),
 		IN_A_FOLDER(keeps_the_locators_of_this_release_and_the_last),
 		IN_A_FOLDER(drops_an_object_whose_bytes_changed),
