@@ -488,6 +488,7 @@ enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_op
 	/* The width sets the size of letters; an EDID that cannot be read this time has none. */
 	same = now.connector == card->connector && now.mode.hdisplay == card->mode.hdisplay &&
 	       now.mode.vdisplay == card->mode.vdisplay &&
+	       now.mode.vrefresh == card->mode.vrefresh && /* the pace of frames */
 	       (now.width_mm == 0 || now.width_mm == card->width_mm);
 	if (!same)
 		return DRM_CARD_OTHER_PANEL;

@@ -56,9 +56,9 @@ void drm_card_close(struct drm_card *card);
 
 enum drm_card_news {
 	DRM_CARD_NO_PANEL,
-	DRM_CARD_SAME_PANEL, /* the size is unchanged; the rate may differ */
-	/* another size, in pixels or mm, another connector or another card, or the card is gone;
-	 * *card is unchanged */
+	DRM_CARD_SAME_PANEL, /* size and rate are unchanged */
+	/* another size, in pixels or mm, another rate, another connector or another card, or the
+	 * card is gone; *card is unchanged */
 	DRM_CARD_OTHER_PANEL,
 };
 

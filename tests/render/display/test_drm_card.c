@@ -495,6 +495,19 @@ static void the_aspect_ratio_of_a_tv_is_no_width(void **state)
 	drm_card_close(&card);
 }
 
+/* Frames would come at the pace of the last one. */
+static void a_panel_of_another_rate_is_another_one(void **state)
+{
+	const struct drm_card_options fast = { .mode = { 1920, 1080, 60 }, .may_wait = true };
+	const struct drm_card_options slow = { .mode = { 1920, 1080, 30 }, .may_wait = true };
+
+	(void)state;
+	CHECK(drm_card_open(&card, &fast) == 0 && card.mode.vrefresh == 60);
+	CHECK(drm_card_look(&card, &fast) == DRM_CARD_SAME_PANEL);
+	CHECK(drm_card_look(&card, &slow) == DRM_CARD_OTHER_PANEL && card.mode.vrefresh == 60);
+	drm_card_close(&card);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -510,6 +523,7 @@ int main(void)
 		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_connector_that_cannot_tell_is_used_at_last, begin),
 		cmocka_unit_test_setup(the_aspect_ratio_of_a_tv_is_no_width, begin),
+		cmocka_unit_test_setup(a_panel_of_another_rate_is_another_one, begin),
 		cmocka_unit_test_setup(a_panel_of_another_width_is_another_one, begin),
 	};
 
