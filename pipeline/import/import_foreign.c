@@ -49,6 +49,8 @@ struct builder {
 	uint64_t vertices, triangles; /* sums over all instances, counted in the first pass */
 	uint64_t skipped;             /* points and lines that were skipped */
 	bool has_colours, has_textures;
+	bool has_bytes; /* colours of vertices are 0..255, as MeshLab writes them in OFF; not 0..1
+			 */
 };
 
 /* Converts a colour to a byte; linear ones with the sRGB transfer function, IEC 61966-2-1. */
@@ -188,6 +190,17 @@ static void move_uv(float out[2], const struct uv_move *move, const struct aiVec
 	out[1] = 1 - (move->offset[1] - move->sine * u + move->cosine * v);
 }
 
+/* Those of glTF are light, which may be brighter than 1. */
+static bool has_bytes(const struct aiMesh *mesh, struct import_foreign_format format)
+{
+	const struct aiColor4D *colours = format.is_linear ? NULL : mesh->mColors[0];
+	float most = 0;
+
+	for (uint32_t i = 0; colours && i < mesh->mNumVertices; i++)
+		most = fmaxf(most, fmaxf(colours[i].r, fmaxf(colours[i].g, colours[i].b)));
+	return most > 1;
+}
+
 static int count_mesh(struct builder *builder, uint32_t index)
 {
 	const struct aiMesh *mesh;
@@ -207,6 +220,7 @@ static int count_mesh(struct builder *builder, uint32_t index)
 	builder->has_colours |=
 		mesh->mColors[0] || plain_colour_of(material, builder->job->format, rgb);
 	builder->has_textures |= coordinates_of(mesh, material) != NULL;
+	builder->has_bytes |= has_bytes(mesh, builder->job->format);
 	return 0;
 }
 
@@ -347,6 +361,8 @@ static void add_vertices(struct builder *builder, const struct aiMesh *from,
 
 	plain_colour_of(material, builder->job->format, plain);
 	factor_of(material, builder->job->format, factor);
+	for (int k = 0; k < 3 && builder->has_bytes; k++)
+		factor[k] /= 255;
 	for (uint32_t i = 0; i < from->mNumVertices; i++) {
 		uint32_t at = mesh->vertex_count++;
 		struct aiVector3D v = from->mVertices[i];

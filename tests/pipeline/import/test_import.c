@@ -628,6 +628,39 @@ static void reads_stl_and_off(void **state)
 	mesh_finish(&mesh);
 }
 
+/* MeshLab writes bytes in OFF; in OBJ there are both. */
+static void colours_of_vertices_may_be_bytes_or_shares(void **state)
+{
+	static const struct {
+		const char *name, *text;
+	} cases[] = {
+		{ "bytes.off", "COFF\n3 1 0\n0 0 0 51 102 0 255\n1 0 0 51 102 0 255\n"
+			       "0 1 0 0 1 255 255\n3 0 1 2\n" },
+		{ "bytes.obj", "v 0 0 0 51 102 0\nv 1 0 0 51 102 0\nv 0 1 0 0 1 255\nf 1 2 3\n" },
+		{ "shares.obj",
+		  "v 0 0 0 0.2 0.4 0\nv 1 0 0 0.2 0.4 0\nv 0 1 0 0 0.004 1\nf 1 2 3\n" },
+	};
+	const struct import_options options = { 0 };
+	struct diagnostics diagnostics;
+	struct import_report report;
+	struct mesh mesh;
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		const uint8_t *first, *last;
+
+		CHECK(import_text(&mesh, &report, cases[i].name, cases[i].text, &options,
+				  &diagnostics) == 0);
+		first = mesh.colours[vertex_at(&mesh, 1, 0)];
+		last = mesh.colours[vertex_at(&mesh, 0, 1)];
+		if (first[0] != 51 || first[1] != 102 || first[2] != 0 || last[1] != 1 ||
+		    last[2] != 255)
+			fail_msg("%s: %u %u %u, %u %u %u", cases[i].name, first[0], first[1],
+				 first[2], last[0], last[1], last[2]);
+		mesh_finish(&mesh);
+	}
+}
+
 static void refuses_what_is_no_surface(void **state)
 {
 	static const struct {
@@ -871,6 +904,7 @@ int main(void)
 		cmocka_unit_test(without_its_picture_a_ply_has_the_colours_of_its_vertices),
 		cmocka_unit_test(what_was_left_out_is_a_warning),
 		cmocka_unit_test(reads_stl_and_off),
+		cmocka_unit_test(colours_of_vertices_may_be_bytes_or_shares),
 		cmocka_unit_test(refuses_what_is_no_surface),
 		cmocka_unit_test(looks_at_all_of_a_gltf),
 		cmocka_unit_test(names_the_folder_where_no_temporary_file_can_be_made),
