@@ -86,13 +86,20 @@ static int write_materials(const struct mesh *mesh, const char *path, int stem)
 
 /* ---- the mesh */
 
+/* Colours of vertices are no part of the format, but what most programs write and read. Beside
+ * textures they are only means of these. */
 static void put_vertices(struct chunk_file *file, const struct mesh *mesh)
 {
+	const bool has_colours = mesh->colours && mesh->texture_count == 0;
+
 	for (uint32_t i = 0; i < mesh->vertex_count && chunk_file_pass(file); i++) {
 		const float *at = mesh->positions[i];
 
-		buffer_print(&file->chunk, "v %.9g %.9g %.9g\n", (double)at[0], (double)at[1],
+		buffer_print(&file->chunk, "v %.9g %.9g %.9g", (double)at[0], (double)at[1],
 			     (double)at[2]);
+		for (int k = 0; k < 3 && has_colours; k++)
+			buffer_print(&file->chunk, " %.5f", mesh->colours[i][k] / 255.0);
+		buffer_put_text(&file->chunk, "\n");
 		spill_pass(i);
 	}
 	for (uint32_t i = 0; mesh->uvs && i < mesh->vertex_count && chunk_file_pass(file); i++) {

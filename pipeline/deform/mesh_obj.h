@@ -5,8 +5,8 @@
 #include "pipeline/import/mesh.h"
 
 /* path ends with ".obj". Beside it, with its name: NAME.mtl, and NAME-N.png for each texture; one
- * of a single pixel is a colour in the MTL. Without textures it is the OBJ alone; colours of
- * vertices are not written. Each file appears when it is complete, the OBJ last. -EINVAL: the path
+ * of a single pixel is a colour in the MTL. Without textures it is the OBJ alone, with the colours
+ * of its vertices. Each file appears when it is complete, the OBJ last. -EINVAL: the path
  * has no such end; -ENAMETOOLONG; or another negative errno. */
 must_check int mesh_obj_write(const struct mesh *mesh, const char *path);
 

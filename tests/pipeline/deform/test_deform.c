@@ -610,6 +610,32 @@ static void textures_go_along(void **state)
 	scan_remove(path);
 }
 
+static void colours_of_vertices_go_along(void **state)
+{
+	const struct import_options options = { .jobs = 1 };
+	struct diagnostics diagnostics = { 0 };
+	struct import_report imported;
+	char path[256], out[300];
+	struct mesh mesh, back;
+	(void)state;
+
+	shape_room(&mesh, 3, 1);
+	for (int corner = 0; corner < 3; corner++)
+		shape_vertex(&mesh, (float)(corner % 2), (float)(corner / 2), 0.5f);
+	shape_triangle(&mesh, 0, 1, 2);
+	scan_write(path, "other.txt", "", 0); /* for its folder */
+	snprintf(out, sizeof(out), "%.*s/bent.obj", (int)(strrchr(path, '/') - path), path);
+	CHECK(mesh_obj_write(&mesh, out) == 0);
+	CHECK(import_scan(&back, out, &options, &imported, &diagnostics) == 0);
+	CHECK(imported.had_colours && back.vertex_count == 3);
+	for (int k = 0; k < 3; k++)
+		CHECK(memcmp(back.colours[back.triangles[0][k]], mesh.colours[mesh.triangles[0][k]],
+			     3) == 0);
+	mesh_finish(&mesh);
+	mesh_finish(&back);
+	scan_remove(path);
+}
+
 static void refuses_what_makes_no_sense(void **state)
 {
 #define STEP(inner)  "{\"steps\": [{" inner "}]}"
@@ -696,6 +722,7 @@ int main(void)
 		cmocka_unit_test(refuses_a_fold_between_vertices),
 		cmocka_unit_test(refuses_a_fold_over_a_valley_between_vertices),
 		cmocka_unit_test(textures_go_along),
+		cmocka_unit_test(colours_of_vertices_go_along),
 		cmocka_unit_test(refuses_what_makes_no_sense),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
