@@ -210,6 +210,9 @@ $(patsubst %.c,$(BUILD)/obj/%.o,$(MAINS) app/settings/options.c): CFLAGS += -DGO
 # Loops over arrays of numbers, which the compiler turns into vector instructions.
 VECTORS := geometry/substance pipeline/material/material $(addprefix pipeline/samples/,pyramid raster resolve)
 $(VECTORS:%=$(BUILD)/obj/%.o): CFLAGS += -O3 -fno-math-errno -fno-trapping-math -Wno-psabi
+# From neighbouring numbers, gcc 12 makes vectors in which (double)(float)x is not rounded. Spheres must be
+# measured from the places that are stored.
+$(BUILD)/obj/pipeline/hierarchy/%.o: CFLAGS += -fno-tree-slp-vectorize
 # Kiosks decode patches all the time: with these loops unrolled, a fifth faster.
 ifeq ($(SAN)$(FUZZER)$(COVERAGE),)
 $(BUILD)/obj/format/patch.o $(BUILD)/obj/format/connectivity.o $(BUILD)/obj/format/predict.o $(BUILD)/obj/format/precision.o: OPT := -O3 -g

@@ -191,6 +191,10 @@ static int make_master(const char *folder, struct scans *scans, struct hash stam
 		diagnostics_add(diagnostics, rc, folder, 0,
 				"the coarsest patches do not fit in one group; use --hierarchy "
 				"groups");
+	if (rc == -EPROTO)
+		diagnostics_add(diagnostics, rc, folder, 0,
+				"its groups break a rule of their format, which is a fault of this "
+				"program: please report it");
 	return rc;
 }
 

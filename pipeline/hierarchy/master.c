@@ -17,7 +17,7 @@
 #include "pipeline/hierarchy/block_build.h"
 
 /* Raise BUILD_VERSION whenever the same scan would give other bytes. */
-enum { BUILD_VERSION = 13, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
+enum { BUILD_VERSION = 14, INDEX_VERSION = 2, INDEX_BYTES_MAX = 256 << 20 };
 
 static const uint8_t magic[4] = { 'G', 'P', 'm', 'i' };
 
@@ -210,6 +210,9 @@ static int build_whole_files(const char *folder, const char *groups, const char 
 {
 	int rc = build_files(folder, groups, blocks, mesh, stamp, options, report);
 
+	/* What no build can use is not for the next one, which may be that of a better program. */
+	if (rc == -EPROTO)
+		bytes_remove_folder(blocks);
 	if (rc != -EBADMSG)
 		return rc;
 	log_warn("pipeline", "%s: a file of an interrupted build is damaged; it begins anew",

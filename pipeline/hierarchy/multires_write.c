@@ -118,7 +118,8 @@ static double farthest(double out[3], const struct group_job *job, const double 
 }
 
 /* Finds nearly the smallest sphere, by steps towards the farthest point (Badoiu and Clarkson 2003).
- * Spheres nest over many levels, so slack would add up. */
+ * Spheres nest over many levels, so slack would add up. Each is measured from the centre that is
+ * stored, rounded: far from the origin that is another place (see the Makefile). */
 static void bound_group(struct group_job *job)
 {
 	double centre[3] = { job->made[0].centre_m[0], job->made[0].centre_m[1],

@@ -216,6 +216,44 @@ static void a_new_build_leaves_nothing_of_the_old(void **state)
 	home_finish(&home);
 }
 
+static const struct master_options shared = {
+	.multires = { .patch_triangles = 64,
+		      .top_triangles = 400,
+		      .block_triangles = 400,
+		      .jobs = 2 },
+};
+
+static void home_of_shards(struct home *home)
+{
+	char hex[HASH_HEX_BYTES];
+
+	memcpy(home->folder, "/tmp/gopura-master-XXXXXX", 26);
+	CHECK(mkdtemp(home->folder) != NULL);
+	home->stamp = master_stamp((struct hash){ { 7 } }, &shared);
+	hash_to_hex(home->stamp, hex);
+	snprintf(home->master, sizeof(home->master), "%s/master", home->folder);
+	snprintf(home->index, sizeof(home->index), "%s/index", home->master);
+	snprintf(home->groups, sizeof(home->groups), "%s/groups-%s", home->master, hex);
+}
+
+/* Places and spheres are floats there, which are rounded by more than what spheres may differ. */
+static void a_model_far_from_the_origin_is_built(void **state)
+{
+	struct mesh mesh = shape_temple(50);
+	struct master_report report;
+	struct home home;
+
+	(void)state;
+	home_of_shards(&home);
+	for (uint32_t v = 0; v < mesh.vertex_count; v++)
+		for (int i = 0; i < 2; i++)
+			mesh.positions[v][i] += 3000.0f;
+	CHECK(master_build(home.master, &mesh, home.stamp, &options, &report) == 0);
+	CHECK(report.stats.level_count > 3);
+	mesh_finish(&mesh);
+	home_finish(&home);
+}
+
 /* All levels have at most 2^20 patches (format/hierarchy.c), up to twice those of the finest. */
 static void the_largest_scans_have_no_more_patches_than_fit(void **state)
 {
@@ -244,13 +282,6 @@ static void patches_of_other_scans_are_as_large_as_asked(void **state)
 
 /* ---- several at once (docs/cluster.md) */
 
-static const struct master_options shared = {
-	.multires = { .patch_triangles = 64,
-		      .top_triangles = 400,
-		      .block_triangles = 400,
-		      .jobs = 2 },
-};
-
 /* Builds a master as one of several shards, in a process of its own. */
 static pid_t begin_shard(const char *folder, uint32_t number, uint32_t count)
 {
@@ -277,19 +308,6 @@ static int end_shard(pid_t pid)
 
 	CHECK(waitpid(pid, &status, 0) == pid && WIFEXITED(status));
 	return WEXITSTATUS(status);
-}
-
-static void home_of_shards(struct home *home)
-{
-	char hex[HASH_HEX_BYTES];
-
-	memcpy(home->folder, "/tmp/gopura-master-XXXXXX", 26);
-	CHECK(mkdtemp(home->folder) != NULL);
-	home->stamp = master_stamp((struct hash){ { 7 } }, &shared);
-	hash_to_hex(home->stamp, hex);
-	snprintf(home->master, sizeof(home->master), "%s/master", home->folder);
-	snprintf(home->index, sizeof(home->index), "%s/index", home->master);
-	snprintf(home->groups, sizeof(home->groups), "%s/groups-%s", home->master, hex);
 }
 
 static void check_same_file(const char *a, const char *b)
@@ -466,6 +484,7 @@ int main(void)
 		cmocka_unit_test(refuses_damaged_files),
 		cmocka_unit_test(publishes_no_more_than_the_share),
 		cmocka_unit_test(a_new_build_leaves_nothing_of_the_old),
+		cmocka_unit_test(a_model_far_from_the_origin_is_built),
 		cmocka_unit_test(the_largest_scans_have_no_more_patches_than_fit),
 		cmocka_unit_test(patches_of_other_scans_are_as_large_as_asked),
 		cmocka_unit_test(shards_at_once_make_the_same_bytes),
