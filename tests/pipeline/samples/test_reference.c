@@ -10,13 +10,14 @@
 #include "pipeline/samples/reference.h"
 #include "tests/check.h"
 
-static char dir[64];
+static char dir[64]; /* DIR/content and DIR/out, where a picture is none of the scan's */
+static char content_dir[96];
 
 static void put_bytes(const char *name, struct bytes bytes)
 {
 	char path[128];
 
-	snprintf(path, sizeof(path), "%s/%s", dir, name);
+	snprintf(path, sizeof(path), "%s/content/%s", dir, name);
 	CHECK(bytes_write_file(bytes, path) == 0);
 }
 
@@ -31,6 +32,9 @@ static int make_dir(void **state)
 	(void)state;
 	snprintf(dir, sizeof(dir), "/tmp/gopura-reference-XXXXXX");
 	if (!mkdtemp(dir))
+		return -1;
+	snprintf(content_dir, sizeof(content_dir), "%s/content", dir);
+	if (mkdir(content_dir, 0777) < 0)
 		return -1;
 	put("scan.ply", "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\n"
 			"property float y\nproperty float z\nproperty uchar red\n"
@@ -111,7 +115,7 @@ static int try_to_draw(const char *views_text, int side, uint32_t supersample)
 	snprintf(out_dir, sizeof(out_dir), "%s/out", dir);
 	options.out_dir = out_dir;
 	CHECK(read_views(&views, &count, views_text, &diagnostics) == 0);
-	CHECK(content_read(&content, dir, &diagnostics) == 0);
+	CHECK(content_read(&content, content_dir, &diagnostics) == 0);
 	CHECK(scans_create(&scans, &content) == 0);
 	rc = reference_draw(scans, views, count, &options, &report, &diagnostics);
 	if (rc == 0) {
@@ -259,7 +263,7 @@ static void a_picture_that_cannot_be_written_has_no_key(void **state)
 	CHECK(unlink(path) == 0 && mkdir(path, 0777) == 0);
 	CHECK(try_to_draw("0 -4 0  0 0 0  90\n", 16, 1) < 0);
 	CHECK(rmdir(path) == 0);
-	put("out/view-0000.png", "what was half written\n");
+	put("../out/view-0000.png", "what was half written\n");
 	put("temple.ini", "[model]\nscans = scan.ply\nlit = no\n");
 	draw(&picture, "0 -4 0  0 0 0  90\n", 16, 1, 1);
 	picture_finish(&picture);
