@@ -101,7 +101,7 @@ prepare 3
 sign strangers set 3.targets.json 'expires="2049-01-01T00:00:00Z"'
 sign strangers chain
 offer
-refuses 'timestamp version 3: fewer valid signatures than its threshold'
+refuses 'timestamp version 4: fewer valid signatures than its threshold'
 
 begin "malicious mirror: pages in place of files, then nothing"
 echo '<html>out of order</html>' >"$release/tuf/timestamp.json"
