@@ -270,25 +270,36 @@ int mesh_file_write(int fd, const struct mesh *mesh, struct hash key)
 	return write_mesh(fd, mesh, key, false);
 }
 
-/* Replaces the large arrays by their places in the file, which starts with the mesh. */
+/* Replaces *array by its place in the file if it is large, and moves *offset behind it. */
+static int map_large(int fd, uint64_t *offset, void **array, size_t bytes)
+{
+	if (bytes >= SPILL_MIN_BYTES) {
+		void *mapped = spill_map(fd, *offset, bytes);
+
+		if (!mapped)
+			return -errno;
+		spill_free(*array);
+		*array = mapped;
+	}
+	*offset += padded(bytes);
+	return 0;
+}
+
+/* Replaces the large arrays, which were discarded, by their places in the file, which starts with
+ * the mesh. */
 static int map_written(int fd, struct mesh *mesh)
 {
 	struct section sections[SECTIONS];
 	uint64_t offset = head_bytes(mesh);
+	int rc = 0;
 
 	lay_out(mesh, flags_of(mesh), sections);
-	for (int i = 0; i < SECTIONS; i++) {
-		if (sections[i].bytes >= SPILL_MIN_BYTES) {
-			void *mapped = spill_map(fd, offset, sections[i].bytes);
-
-			if (!mapped)
-				return -errno;
-			spill_free(*sections[i].data);
-			*sections[i].data = mapped;
-		}
-		offset += padded(sections[i].bytes);
-	}
-	return 0;
+	for (int i = 0; i < SECTIONS && rc == 0; i++)
+		rc = map_large(fd, &offset, sections[i].data, sections[i].bytes);
+	for (uint32_t i = 0; i < mesh->texture_count && rc == 0; i++)
+		rc = map_large(fd, &offset, (void **)&mesh->textures[i].rgb,
+			       texture_bytes(&mesh->textures[i]));
+	return rc;
 }
 
 int mesh_file_save(const struct mesh *mesh, struct hash key, const char *path)

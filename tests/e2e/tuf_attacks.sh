@@ -167,7 +167,7 @@ honest 7 # the thief's timestamp has the version of release 6
 begin "rollback: all files as they were three releases ago"
 prepare 4
 offer
-refuses 'timestamp 3 is older than 6'
+refuses 'timestamp 4 is older than 7'
 
 begin "fast-forward: versions that the publisher cannot surpass, by stolen keys"
 prepare 7

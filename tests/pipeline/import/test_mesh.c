@@ -213,6 +213,42 @@ static void check_large_mesh(const struct mesh *mesh)
 	mesh_finish(&right);
 }
 
+enum { LARGE_SIDE = 4096 };
+
+static void check_large_picture(const struct mesh *mesh)
+{
+	const struct mesh_texture *picture = &mesh->textures[0];
+	size_t wrong = 0;
+
+	CHECK(picture->width == LARGE_SIDE && picture->height == LARGE_SIDE);
+	for (size_t i = 0; i < (size_t)3 * LARGE_SIDE * LARGE_SIDE; i++)
+		wrong += picture->rgb[i] != (uint8_t)(i % 251);
+	CHECK(wrong == 0);
+}
+
+/* As a reader process returns it: the picture lies in an array of its own, as large ones do. */
+static void a_moved_picture_is_its_file(void **state)
+{
+	struct mesh mesh = make_mesh(true), loaded;
+	const size_t bytes = (size_t)3 * LARGE_SIDE * LARGE_SIDE;
+	char path[256];
+	(void)state;
+
+	free(mesh.textures[0].rgb);
+	mesh.textures[0] = (struct mesh_texture){ LARGE_SIDE, LARGE_SIDE, spill_alloc(bytes) };
+	CHECK(bytes >= SPILL_MIN_BYTES && mesh.textures[0].rgb);
+	for (size_t i = 0; i < bytes; i++)
+		mesh.textures[0].rgb[i] = (uint8_t)(i % 251);
+	scan_write(path, "mesh", "", 0);
+	CHECK(mesh_file_move(&mesh, key, path) == 0);
+	check_large_picture(&mesh);
+	mesh_finish(&mesh);
+	CHECK(mesh_file_load(&loaded, key, path) == 0);
+	check_large_picture(&loaded);
+	mesh_finish(&loaded);
+	scan_remove(path);
+}
+
 /* Its chunks are hashed by several threads. */
 static void a_moved_mesh_is_its_file(void **state)
 {
@@ -311,6 +347,7 @@ int main(void)
 		cmocka_unit_test(no_vertex_takes_the_colour_between_charts),
 		cmocka_unit_test(appending_shifts_indices_and_fills_what_is_missing),
 		cmocka_unit_test(a_saved_mesh_loads_equal_under_its_key_only),
+		cmocka_unit_test(a_moved_picture_is_its_file),
 		cmocka_unit_test(a_moved_mesh_is_its_file),
 		cmocka_unit_test(a_mesh_that_is_read_can_be_changed_however_large),
 		cmocka_unit_test(every_truncation_and_every_flipped_byte_is_noticed),
