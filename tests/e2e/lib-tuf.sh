@@ -44,7 +44,8 @@ stop_all() {
 said() { grep -q "$2" "$work/$1.log"; }
 shown() { [ "$(grep -c 'release .* is shown' "$work/$1.log")" -ge "$2" ]; }
 has_shown() { grep -q "release $2 is stored in the state" "$work/$1.log"; }
-refused() { grep -v 'refused tuf/1.root.json' "$work/$1.log" | grep -q 'refused'; }
+# A copy to the server brings release.json a moment before its timestamp.json.
+refused() { grep -vE 'refused tuf/1.root.json|is not the one timestamp.json names' "$work/$1.log" | grep -q 'refused'; }
 
 # metrics NAME: of a terminal, or of its fetcher: NAME-fetch. figure NAME METRIC: one of them; why NAME: the last refusal.
 metrics() { python3 -c 'import socket, sys

@@ -180,7 +180,7 @@ taken() { [ "$(figure hall gopura_kiosk_trust_timestamp_version)" = 2000000001 ]
 wait_for 20 "the thief's timestamp" taken
 prepare 8
 offer
-refuses 'timestamp 7 is older than 2000000001'
+refuses 'timestamp 8 is older than 2000000001'
 echo "its recovery: the next root has other keys in place of those stolen"
 prepare 8
 sign successors root
