@@ -344,8 +344,10 @@ static int open_any(struct drm_card *out, enum presence least, bool told, int *t
 
 		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
 		rc = open_card(out, options->device ? options->device : path, least, options);
-		if (rc == 0)
+		if (rc == 0) {
+			out->number = i;
 			return 0;
+		}
 		if (rc == -EBUSY && result != -EBUSY) {
 			result = -EBUSY;
 			*taken = i;
@@ -450,17 +452,24 @@ int drm_card_open(struct drm_card *out, const struct drm_card_options *options)
 	return open_when_free(out, options);
 }
 
-/* Returns whether a panel is connected to a card that a new process would take. Of this one there
- * is none, so it is not taken for another. */
-static bool is_on_another_card(const struct drm_card_options *options)
+/* Returns whether a new process would take another card: one with a panel that comes before this
+ * one, or any where this one has none. So nobody is left in the dark before a panel that was off
+ * for a while. */
+static bool is_on_another_card(const struct drm_card *card, bool is_here,
+			       const struct drm_card_options *options)
 {
-	struct drm_card other;
-	int taken;
+	char path[32];
 
-	if (options->device || open_any(&other, PRESENT, true, &taken, options) < 0)
-		return false;
-	drm_card_close(&other);
-	return true;
+	for (int i = 0; !options->device && i < (is_here ? card->number : CARDS_MAX); i++) {
+		struct drm_card other;
+
+		snprintf(path, sizeof(path), "/dev/dri/card%d", i);
+		if (i == card->number || open_card(&other, path, PRESENT, options) < 0)
+			continue;
+		drm_card_close(&other);
+		return true;
+	}
+	return false;
 }
 
 enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_options *options)
@@ -473,7 +482,7 @@ enum drm_card_news drm_card_look(struct drm_card *card, const struct drm_card_op
 	bool there, elsewhere, same;
 
 	there = resources && choose_connector(&now, resources, PRESENT, options, &crtc_bits);
-	elsewhere = is_gone || (!there && is_on_another_card(options));
+	elsewhere = is_gone || is_on_another_card(card, there, options);
 	there = there || (resources &&
 			  choose_connector(&now, resources, PERHAPS_PRESENT, options, &crtc_bits));
 	drmModeFreeResources(resources);

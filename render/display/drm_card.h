@@ -31,7 +31,8 @@ struct drm_card_properties {
 };
 
 struct drm_card {
-	int fd; /* owned */
+	int fd;     /* owned */
+	int number; /* of /dev/dri/cardN, where no device is named */
 	bool atomic;
 	/* as of the last drm_card_look; a connector that cannot tell counts as connected */
 	bool connected, link_is_bad;

@@ -442,6 +442,21 @@ static void a_panel_on_another_card_asks_for_another_process(void **state)
 	CHECK(look() == DRM_CARD_SAME_PANEL);
 }
 
+/* The panel of the first card was off for a night, in which another one was taken. */
+static void a_panel_on_the_first_card_is_gone_back_to(void **state)
+{
+	(void)state;
+	cards[1] = cards[0];
+	cards[0].has_panel = false;
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[1]);
+	CHECK(look() == DRM_CARD_SAME_PANEL);
+	CHECK(drm_card_open(&card, &any_card) == 0);
+	cards[0].has_panel = true;
+	CHECK(look() == DRM_CARD_OTHER_PANEL);
+	CHECK(drm_card_open(&card, &any_card) == 0 && card_of[card.fd] == &cards[0]);
+	CHECK(look() == DRM_CARD_SAME_PANEL);
+}
+
 static void a_card_that_is_gone_asks_for_another_process(void **state)
 {
 	(void)state;
@@ -520,6 +535,7 @@ int main(void)
 		cmocka_unit_test_setup(takes_a_crtc_that_can_do_the_mode, begin),
 		cmocka_unit_test_setup(a_panel_comes_and_goes, begin),
 		cmocka_unit_test_setup(a_panel_on_another_card_asks_for_another_process, begin),
+		cmocka_unit_test_setup(a_panel_on_the_first_card_is_gone_back_to, begin),
 		cmocka_unit_test_setup(a_card_that_is_gone_asks_for_another_process, begin),
 		cmocka_unit_test_setup(a_connector_that_cannot_tell_is_used_at_last, begin),
 		cmocka_unit_test_setup(the_aspect_ratio_of_a_tv_is_no_width, begin),
