@@ -33,8 +33,7 @@ enum drm_panel_step drm_panel_after_flip(int rc, unsigned refusals)
 		return DRM_PANEL_GO_ON;
 	if (drm_card_is_taken(rc))
 		return DRM_PANEL_LATER;
-	/* the card is gone or memory is short: checking the connector would not help */
-	if (rc == -ENODEV || rc == -ENOMEM)
+	if (rc == -ENOMEM) /* checking the connector would not help */
 		return DRM_PANEL_FAULT;
 	return refusals < REFUSALS_MAX ? DRM_PANEL_LOOK : DRM_PANEL_FAULT;
 }
@@ -159,12 +158,16 @@ int drm_panel_wait_ms(const struct drm_panel *panel)
 
 static int look(struct drm_panel *panel, bool refused)
 {
-	const bool was_away = panel->away;
+	const bool was_away = panel->away, was_unseen = panel->unseen;
 	const enum drm_card_news news = drm_card_look(&panel->card, &panel->options);
 
 	panel->away = news == DRM_CARD_NO_PANEL;
+	panel->unseen = false;
+	if (panel->away)
+		panel->busy_since_ms = 0; /* what the driver had to do ends with the panel */
 	plan_look(panel);
-	switch (drm_panel_after_look(news, was_away, refused, panel->card.link_is_bad)) {
+	switch (drm_panel_after_look(news, was_away || was_unseen, refused,
+				     panel->card.link_is_bad)) {
 	case DRM_PANEL_WAIT:
 		if (!was_away)
 			log_warn("render", "the panel was unplugged");
@@ -212,7 +215,7 @@ static int look_if_due(struct drm_panel *panel)
 
 	if (panel->asleep) /* many panels disconnect while asleep */
 		return 0;
-	if (plugged || (due && (panel->away || seems_changed(panel))))
+	if (plugged || (due && (panel->away || panel->unseen || seems_changed(panel))))
 		return look(panel, false);
 	if (due)
 		plan_look(panel);
@@ -320,6 +323,8 @@ int drm_panel_show(struct drm_panel *panel, uint32_t fb, bool *shown)
 
 int drm_panel_sleep(struct drm_panel *panel, bool asleep)
 {
+	enum drm_card_news news;
+
 	if (asleep == panel->asleep)
 		return 0;
 	panel->asleep = asleep;
@@ -331,8 +336,8 @@ int drm_panel_sleep(struct drm_panel *panel, bool asleep)
 		log_debug("render", "the panel is woken by a picture instead of DPMS");
 	/* A panel that disconnected in its sleep may come back only for a signal: it is given one,
 	 * and looked for after that. */
-	if (drm_card_look(&panel->card, &panel->options) == DRM_CARD_OTHER_PANEL)
-		return -ESTALE;
+	news = drm_card_look(&panel->card, &panel->options);
+	panel->unseen = news == DRM_CARD_NO_PANEL;
 	plan_look(panel);
-	return 0;
+	return news == DRM_CARD_OTHER_PANEL ? -ESTALE : 0;
 }

@@ -15,11 +15,11 @@ struct drm_panel {
 	bool away, asleep, taken;        /* the reasons why nothing is shown */
 	bool taken_said;                 /* taken was logged; reset when a picture is shown */
 	bool mode_is_set, flip_pending, stale;
+	bool unseen; /* a picture is shown although no panel is connected, to wake one */
 	int64_t flip_asked_ms, flip_most_ms; /* when it was asked for, and how long it may take */
 	int64_t look_ms; /* when to check the connector next, unless the kernel reports a change */
 	int64_t retry_ms;
-	int64_t busy_since_ms; /* the card says so although no other program has it; 0: it does not
-				*/
+	int64_t busy_since_ms; /* the card says so, but no other program has it; 0: it is not */
 	unsigned refusals;     /* consecutive ones */
 };
 

@@ -361,6 +361,30 @@ static void a_card_that_is_busy_for_ever_is_a_fault(void **state)
 	CHECK(rc == -EBUSY && tries > 200);
 }
 
+/* It was busy when the panel was pulled, and is when it is back. */
+static void time_without_a_panel_is_not_busy(void **state)
+{
+	(void)state;
+	show_and_flip();
+	card.flip_rc = -EBUSY;
+	show(false);
+	card.plugged_event = true;
+	card.news = DRM_CARD_NO_PANEL;
+	turn();
+	for (int i = 0; i < 100; i++) {
+		now_ms += 2000;
+		turn();
+	}
+	card.news = DRM_CARD_SAME_PANEL;
+	now_ms += 2000;
+	turn();
+	show(false);
+	card.flip_rc = 0;
+	now_ms += 250;
+	turn();
+	show_and_flip();
+}
+
 static void a_refused_picture_is_tried_with_its_mode(void **state)
 {
 	(void)state;
@@ -400,13 +424,16 @@ static void a_refusal_for_want_of_a_panel_is_no_fault(void **state)
 	CHECK(drm_panel_dark(&panel));
 }
 
-static void a_card_that_is_gone_is_a_fault(void **state)
+/* Its last picture finds out before an event does. */
+static void a_card_that_is_gone_asks_for_another_process(void **state)
 {
 	bool shown;
 
 	(void)state;
+	show_and_flip();
 	card.flip_rc = -ENODEV;
-	CHECK(drm_panel_show(&panel, 1, &shown) == -ENODEV);
+	card.news = DRM_CARD_OTHER_PANEL;
+	CHECK(drm_panel_show(&panel, 1, &shown) == -ESTALE && !shown);
 }
 
 /* Many a panel lets go of its connector while it sleeps. */
@@ -443,6 +470,31 @@ static void a_panel_that_went_in_its_sleep_gets_a_signal(void **state)
 	now_ms += 5000;
 	turn();
 	CHECK(drm_panel_dark(&panel) && drm_panel_wait_ms(&panel) == 2000);
+}
+
+static void a_panel_that_a_signal_woke_has_its_mode_set(void **state)
+{
+	(void)state;
+	for (int by_event = 0; by_event < 2; by_event++) {
+		show_and_flip();
+		CHECK(drm_panel_sleep(&panel, true) == 0);
+		card.connected = false;
+		card.news = DRM_CARD_NO_PANEL;
+		CHECK(drm_panel_sleep(&panel, false) == 0);
+		show_and_flip();
+		card.mode_sets = 0;
+		card.connected = true;
+		card.news = DRM_CARD_SAME_PANEL;
+		card.plugged_event = by_event;
+		now_ms += by_event ? 1000 : 5000;
+		turn();
+		CHECK(drm_panel_take_stale(&panel));
+		show_and_flip();
+		CHECK(card.mode_sets == 1);
+		now_ms += 5000;
+		turn();
+		CHECK(!drm_panel_take_stale(&panel)); /* once */
+	}
 }
 
 static void wakes_to_another_panel(void **state)
@@ -500,12 +552,14 @@ int main(void)
 		CASE(waits_while_another_program_has_the_panel),
 		CASE(a_suspend_that_keeps_the_card_busy_passes),
 		CASE(a_card_that_is_busy_for_ever_is_a_fault),
+		CASE(time_without_a_panel_is_not_busy),
 		CASE(a_refused_picture_is_tried_with_its_mode),
 		CASE(a_panel_that_refuses_everything_is_a_fault),
 		CASE(a_refusal_for_want_of_a_panel_is_no_fault),
-		CASE(a_card_that_is_gone_is_a_fault),
+		CASE(a_card_that_is_gone_asks_for_another_process),
 		CASE(sleeps_and_wakes_with_its_mode),
 		CASE(a_panel_that_went_in_its_sleep_gets_a_signal),
+		CASE(a_panel_that_a_signal_woke_has_its_mode_set),
 		CASE(wakes_to_another_panel),
 		CASE(a_flip_may_hang_for_want_of_a_panel),
 		CASE(says_when_a_panel_cannot_sleep),
