@@ -75,10 +75,11 @@ static bool is_meant(struct fingers *fingers, enum gesture_kind gesture,
 	const enum overlay_action_kind before = fingers->tapped;
 
 	fingers->tapped = kind;
-	if (gesture == GESTURE_TAP || before == OVERLAY_NONE)
+	/* Beside a control nothing was done: who missed it taps again at once. */
+	if (gesture == GESTURE_TAP || before == OVERLAY_NONE || before == OVERLAY_SWALLOWED)
 		return true;
-	return kind == before && (kind == OVERLAY_SWALLOWED || kind == OVERLAY_KEY ||
-				  kind == OVERLAY_BACK || kind == OVERLAY_PICTURE);
+	return kind == before &&
+	       (kind == OVERLAY_KEY || kind == OVERLAY_BACK || kind == OVERLAY_PICTURE);
 }
 
 static void on_tap(struct fingers *fingers, const struct gesture *gesture)

@@ -73,15 +73,19 @@ static void touch(enum touch_phase phase, float x_px, float y_px)
 				 .phase = phase, .x_px = x_px, .y_px = y_px, .time_us = at_us });
 }
 
-static void tap_twice(float x_px, float y_px)
+static void tap(float x_px, float y_px)
 {
-	for (int i = 0; i < 2; i++) {
-		touch(TOUCH_DOWN, x_px, y_px);
-		touch(TOUCH_UP, x_px, y_px);
-	}
+	touch(TOUCH_DOWN, x_px, y_px);
+	touch(TOUCH_UP, x_px, y_px);
 }
 
-static void tap_button_twice(enum bar_view_button_kind kind)
+static void tap_twice(float x_px, float y_px)
+{
+	tap(x_px, y_px);
+	tap(x_px, y_px);
+}
+
+static struct rect button_place(enum bar_view_button_kind kind)
 {
 	const struct bar_view *bar = &words()->bar;
 	const struct rect place = bar_place(words());
@@ -89,7 +93,15 @@ static void tap_button_twice(enum bar_view_button_kind kind)
 
 	while (bar->buttons[i].kind != kind)
 		i++;
-	tap_twice((float)(place.x_px + bar->buttons[i].x_px + bar->buttons[i].width_px / 2),
+	return (struct rect){ place.x_px + bar->buttons[i].x_px, place.y_px,
+			      bar->buttons[i].width_px, place.height_px };
+}
+
+static void tap_button_twice(enum bar_view_button_kind kind)
+{
+	const struct rect place = button_place(kind);
+
+	tap_twice((float)(place.x_px + place.width_px / 2),
 		  (float)(place.y_px + place.height_px / 2));
 }
 
@@ -132,6 +144,19 @@ static void back_counts_each_tap(void **state)
 	CHECK(overlay_page(words()) == -1 && overlay_card(words()) == -1);
 }
 
+/* Back leads nowhere yet, and the next control is beside it. */
+static void who_missed_a_control_taps_again(void **state)
+{
+	const struct rect back = button_place(BAR_BACK), help = button_place(BAR_HELP);
+	const float y_px = (float)(back.y_px + back.height_px / 2);
+
+	(void)state;
+	CHECK(back.x_px + back.width_px <= help.x_px);
+	tap((float)(back.x_px + back.width_px - 2), y_px);
+	tap((float)(help.x_px + 2), y_px);
+	CHECK(overlay_help(words()));
+}
+
 #define TOUCHED(test) cmocka_unit_test_setup_teardown(test, begin, end_visit)
 
 int main(void)
@@ -141,6 +166,7 @@ int main(void)
 		TOUCHED(what_closes_opens_nothing_below),
 		TOUCHED(what_is_switched_stays),
 		TOUCHED(back_counts_each_tap),
+		TOUCHED(who_missed_a_control_taps_again),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
