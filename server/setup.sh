@@ -39,15 +39,16 @@ done
 ec() { openssl ecparam -name prime256v1 -genkey -noout -out "$1" && chmod 0600 "$1"; }
 fail() { echo "setup.sh: $*" >&2; exit 1; }
 cd "$run/tls"
-if [ ! -e ca.key ] && [ ! -e server.pem ]; then
+holds() { openssl x509 -in "$1" -noout 2>/dev/null; } # a certificate
+if [ ! -e ca.key ] && [ ! -e server.pem ] && ! holds ../ca.pem; then
 	ec ca.key.new
 	openssl req -x509 -new -key ca.key.new -sha256 -days 10950 -subj "/CN=Gopura museum server $(date +%F)" \
 		-addext basicConstraints=critical,CA:TRUE,pathlen:0 \
 		-addext keyUsage=critical,keyCertSign,cRLSign -out ../ca.pem.new
-	openssl x509 -in ../ca.pem.new -noout # openssl does not tell of a full disk
-	mv ../ca.pem.new ../ca.pem
+	holds ../ca.pem.new || fail "$run/ca.pem cannot be written: is the disk full?" # openssl does not tell
 	mv ca.key.new ca.key
-elif ! openssl x509 -in ../ca.pem -noout 2>/dev/null; then
+	mv ../ca.pem.new ../ca.pem
+elif ! holds ../ca.pem; then
 	# Another authority, made silently, would be one that no terminal knows.
 	fail "$run/ca.pem is missing or damaged: copy it back from a terminal or a backup. If no terminal has it, remove" \
 		"$run/tls, and another one is made"

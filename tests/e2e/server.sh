@@ -98,6 +98,12 @@ done
 mv "$folder/run2/tls/ca.key" "$folder/ca.key"
 setup third.name | grep -q 'tls/ca.key is missing' || fail "no word of a key that is missing"
 mv "$folder/ca.key" "$folder/run2/tls/ca.key"
+cp "$folder/run2/ca.pem" "$folder/kept.pem"
+mv "$folder/run2/tls" "$folder/tls" # as on another machine that got what terminals have
+setup | grep -q 'tls/ca.key is missing' || fail "no word of a folder tls that is missing"
+cmp "$folder/run2/ca.pem" "$folder/kept.pem" || fail "another authority in the place of one whose key is missing"
+rm -r "$folder/run2/tls"
+mv "$folder/tls" "$folder/run2/tls"
 
 # A disk that is full, or a kill, in the middle of it: the next start makes it whole.
 mkdir "$folder/bin"
