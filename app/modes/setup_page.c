@@ -75,7 +75,7 @@ static int draw_missing(struct setup_page *page, const struct options *options)
 		.lead = "No release is configured, so there is nothing to show.",
 		.items = items,
 		.count = HINTS_MAX,
-		.foot = "On the appliance, /efi is the partition gopura-esp of its disk, and "
+		.foot = "On the appliance, /efi is the partition GOPURA of its disk, and "
 			"/run/gopura-stick is any USB stick. docs/terminal.md describes the other "
 			"entries: language, panel, opening hours, network, Wi-Fi.",
 	};
