@@ -111,12 +111,12 @@ static int allocate(struct collector *collector, bool is_grid)
 		collector->grid.columns = summary->grid_columns;
 		collector->grid.rows = summary->grid_rows;
 		collector->grid.cells = malloc(cells * sizeof(*collector->grid.cells));
-	} else if (!summary->has_normal) {
+	} else if (summary->face_count > 0) {
 		collector->face_normals =
 			calloc(summary->vertex_count, sizeof(*collector->face_normals));
 	}
 	if (!collector->points || (is_grid && !collector->grid.cells) ||
-	    (!is_grid && !summary->has_normal && !collector->face_normals))
+	    (!is_grid && summary->face_count > 0 && !collector->face_normals))
 		return -ENOMEM;
 	/* Without a range_grid, the vertices themselves are the cells. */
 	for (uint64_t i = 0; is_grid && i < cells; i++)
@@ -202,10 +202,11 @@ static int orient(struct collector *collector, enum range_sight sight, double *s
 		struct range_point *point = &collector->points[i];
 		double length = 0;
 
-		for (int k = 0; k < 3 && collector->face_normals; k++)
+		for (int k = 0; k < 3 && collector->triangles; k++)
 			length = fmax(length, fabs(collector->face_normals[i][k]));
-		for (int k = 0; k < 3 && length > 0; k++)
-			point->normal[k] = (float)(collector->face_normals[i][k] / length);
+		for (int k = 0; k < 3 && collector->triangles; k++)
+			point->normal[k] =
+				length > 0 ? (float)(collector->face_normals[i][k] / length) : 0;
 		length = (double)vec_normalise(point->normal);
 		if (!(length > 0) || !isfinite(length))
 			point->weight = 0;
@@ -227,14 +228,17 @@ static void turn(float direction[3], const struct transform *transform)
 	vec_normalise(direction);
 }
 
-/* Keeps the triangles whose corners were kept. numbers: of each vertex, or RANGE_NO_POINT. */
+/* Keeps the triangles whose corners were kept. numbers: of each vertex, or RANGE_NO_POINT. A
+ * mirrored triangle would show its inside, so its corners change their order. */
 static void keep_triangles(struct range_scan *scan, struct collector *collector,
-			   const uint32_t *numbers)
+			   const uint32_t *numbers, bool is_mirrored)
 {
+	const int second = is_mirrored ? 2 : 1;
+
 	for (uint32_t t = 0; t < collector->triangle_count; t++) {
 		const uint32_t *corners = collector->triangles[t];
-		const uint32_t kept[3] = { numbers[corners[0]], numbers[corners[1]],
-					   numbers[corners[2]] };
+		const uint32_t kept[3] = { numbers[corners[0]], numbers[corners[second]],
+					   numbers[corners[3 - second]] };
 
 		if (kept[0] == RANGE_NO_POINT || kept[1] == RANGE_NO_POINT ||
 		    kept[2] == RANGE_NO_POINT)
@@ -279,7 +283,7 @@ static int keep_good(struct range_scan *scan, struct collector *collector,
 	scan->points = collector->points;
 	collector->points = NULL;
 	if (collector->triangles)
-		keep_triangles(scan, collector, numbers);
+		keep_triangles(scan, collector, numbers, transform && transform_mirrors(transform));
 	free(numbers);
 	return 0;
 }

@@ -269,6 +269,37 @@ static void faces_of_a_mesh_give_points(void **state)
 	scan_remove(path);
 }
 
+/* Meshes with normals at their vertices, which most programs write, are meshes too; and one that is
+ * placed in a mirror keeps its outside. */
+static void normals_and_mirrors_leave_a_mesh_what_it_is(void **state)
+{
+	static const char text[] =
+		HEAD "element vertex 8\n" XYZ "property float nx\nproperty float ny\n"
+		     "property float nz\nelement face 6\n"
+		     "property list uchar int vertex_indices\nend_header\n"
+		     "0 0 0 -1 -1 -1\n1 0 0 1 -1 -1\n0 1 0 -1 1 -1\n1 1 0 1 1 -1\n"
+		     "0 0 1 -1 -1 1\n1 0 1 1 -1 1\n0 1 1 -1 1 1\n1 1 1 1 1 1\n"
+		     "4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
+	static const struct transform mirror = {
+		{ { -1, 0, 0, 0 }, { 0, 1, 0, 0 }, { 0, 0, 1, 0 } }
+	};
+	const struct reconstruct_options options = { .cell = 0.05, .is_closed = true };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	char path[256];
+	(void)state;
+
+	scan_write(path, "box.ply", text, strlen(text));
+	for (int i = 0; i < 2; i++) {
+		scans[0] = (struct reconstruct_scan){ path, i ? &mirror : NULL };
+		mesh = run(&options, 1, &report);
+		CHECK(report.parts == 1 && report.border_edges == 0);
+		CHECK(fabs(volume6(&mesh) / 6 - 1) < 0.03);
+		mesh_finish(&mesh);
+	}
+	scan_remove(path);
+}
+
 static void faces_may_come_before_their_corners(void **state)
 {
 	static const char text[] = HEAD "element face 1\n"
@@ -318,6 +349,7 @@ int main(void)
 		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
+		cmocka_unit_test(normals_and_mirrors_leave_a_mesh_what_it_is),
 		cmocka_unit_test(faces_may_come_before_their_corners),
 		cmocka_unit_test(registrations_place_the_scans),
 	};
