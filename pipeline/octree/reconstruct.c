@@ -2,6 +2,7 @@
 #include "pipeline/octree/reconstruct.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,8 @@
 #include "pipeline/octree/mesh_parts.h"
 
 static const double default_cell_spacings = 1.5;
+/* Places of the surface are floats: their steps may be as large as this share of a cube. */
+static const double coarsest_step = 0.125;
 static const uint32_t default_depth = 8;
 /* A part with a smaller share of the largest part's triangles is noise. */
 static const double small_share = 0.001;
@@ -95,6 +98,26 @@ static int measure(struct work *work)
 
 /* ---- the cubes */
 
+/* Refuses a box so far from the origin that places on the surface would be rounded to a stair. */
+static int judge_distance(const struct work *work, double cell)
+{
+	double farthest = 0, step;
+
+	for (int k = 0; k < 3; k++)
+		farthest = fmax(farthest,
+				fmax(fabs(work->report->low[k]), fabs(work->report->high[k])));
+	step = ldexp(1, ilogb(farthest) + 1 - FLT_MANT_DIG);
+	if (step <= coarsest_step * cell)
+		return 0;
+	return diagnostics_add(
+		work->diagnostics, -EINVAL, work->scans[0].path, 0,
+		"the scans lie up to %.9g from the origin, where places are known to "
+		"%.3g only, and leaf cubes are %.3g (in the unit of the files): move "
+		"all scans by the same way to the origin, as the matrices of an .aln "
+		"do, or choose larger cubes",
+		farthest, step, cell);
+}
+
 static int choose_cell(struct work *work)
 {
 	const struct reconstruct_options *options = work->options;
@@ -118,7 +141,7 @@ static int choose_cell(struct work *work)
 				       cell, 1 << RECONSTRUCT_DEPTH_MAX, longest);
 	work->field.cell = report->cell = cell;
 	memcpy(work->field.origin, report->low, sizeof(work->field.origin));
-	return 0;
+	return judge_distance(work, cell);
 }
 
 static int start_fill(struct work *work)

@@ -151,6 +151,29 @@ static void is_open_or_watertight_as_asked(void **state)
 	scan_remove(folder_file);
 }
 
+/* In coordinates of a map, floats are half a metre apart. */
+static void refuses_scans_far_from_the_origin_with_a_cure(void **state)
+{
+	struct reconstruct_options options = { .cell = 0.1 };
+	struct diagnostics diagnostics = { 0 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	(void)state;
+
+	make_scans(0);
+	for (int v = 0; v < VIEWS; v++)
+		places[v].rows[1][3] = 5400000;
+	CHECK(reconstruct(&mesh, scans, VIEWS, &options, &report, &diagnostics) == -EINVAL);
+	CHECK(strstr(diagnostics.first.text, "move all scans by the same way to the origin"));
+	CHECK(mesh.triangle_count == 0);
+	for (int v = 0; v < VIEWS; v++)
+		places[v].rows[1][3] = 5400;
+	mesh = run(&options, VIEWS, &report);
+	CHECK(report.parts == 1 && report.border_edges == 0);
+	mesh_finish(&mesh);
+	scan_remove(folder_file);
+}
+
 static void depth_sets_the_number_of_cubes(void **state)
 {
 	const struct reconstruct_options options = { .depth = 5 };
@@ -345,6 +368,7 @@ int main(void)
 		cmocka_unit_test(finds_the_true_surface_without_and_with_noise),
 		cmocka_unit_test(keeps_colours),
 		cmocka_unit_test(is_open_or_watertight_as_asked),
+		cmocka_unit_test(refuses_scans_far_from_the_origin_with_a_cure),
 		cmocka_unit_test(depth_sets_the_number_of_cubes),
 		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
