@@ -177,7 +177,8 @@ static int end_cell(struct pass *pass)
 {
 	const struct ply *ply = pass->ply;
 
-	if (!pass->visitor->cell)
+	/* Without a list of vertices they are no cells, and the summary counts none. */
+	if (!pass->visitor->cell || ply->summary.grid_cells == 0)
 		return 0;
 	return pass->visitor->cell(pass->visitor->data, pass->index,
 				   ply->corner_count > 0 ? (int64_t)ply->corners[0] : -1);

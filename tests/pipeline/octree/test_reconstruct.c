@@ -262,6 +262,22 @@ static void reads_clouds_with_normals_and_meshes(void **state)
 			&diagnostics) == 0);
 }
 
+/* A range_grid whose cells name no vertices is skipped, as any element that is not known. */
+static void a_grid_without_vertices_is_no_range_image(void **state)
+{
+	struct diagnostics diagnostics;
+	(void)state;
+
+	CHECK(read_text(HEAD "element vertex 1\n" XYZ "property float nx\nproperty float ny\n"
+			     "property float nz\nelement range_grid 2\nproperty uchar seen\n"
+			     "end_header\n0 0 0 0 0 1\n1\n0\n",
+			&diagnostics) == 0);
+	CHECK(read_text(HEAD "obj_info num_cols 2\nobj_info num_rows 2\nelement vertex 4\n" XYZ
+			     "element range_grid 6\nproperty uchar seen\nend_header\n"
+			     "0 0 0.1\n1 0 0\n0 1 0\n1 1 0.1\n1\n1\n1\n1\n1\n1\n",
+			&diagnostics) == 0);
+}
+
 /* Its corners alone would be 40 cubes apart. Edges are rounded by half a cube. */
 static void faces_of_a_mesh_give_points(void **state)
 {
@@ -372,6 +388,7 @@ int main(void)
 		cmocka_unit_test(depth_sets_the_number_of_cubes),
 		cmocka_unit_test(refuses_what_is_no_scan_with_a_cure),
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
+		cmocka_unit_test(a_grid_without_vertices_is_no_range_image),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
 		cmocka_unit_test(normals_and_mirrors_leave_a_mesh_what_it_is),
 		cmocka_unit_test(faces_may_come_before_their_corners),
