@@ -16,7 +16,7 @@
 #include "pipeline/octree/reconstruct.h"
 
 /* SURFACE_VERSION must be raised whenever the same scans give another surface. */
-enum { SURFACE_VERSION = 2, KEY_TEXT_MAX = 1 << 26 };
+enum { SURFACE_VERSION = 3, KEY_TEXT_MAX = 1 << 26 };
 
 static const char surface_name[] = "surface.ply", key_name[] = "surface";
 

@@ -10,6 +10,7 @@
 #include "base/array.h"
 #include "geometry/vec.h"
 #include "pipeline/import/ply.h"
+#include "pipeline/octree/range_cloud.h"
 #include "pipeline/octree/range_grid.h"
 
 struct collector {
@@ -319,6 +320,8 @@ int range_scan_read(struct range_scan *out, const char *path, const struct trans
 			rc = diagnostics_add(diagnostics, -EBADMSG, path, 0,
 					     "none of its points has a place and a normal; export "
 					     "it again");
+		if (rc == 0 && !collector.grid.cells && !out->triangles)
+			rc = range_cloud_spacing(&out->spacing, out->points, out->count);
 	}
 	if (rc == -ENOMEM)
 		diagnostics_add(diagnostics, rc, path, 0, "too large for this machine's memory");

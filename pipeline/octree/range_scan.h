@@ -35,8 +35,8 @@ struct range_scan {
 	uint32_t count;
 	struct range_point *points; /* owned */
 	bool has_colour;
-	double spacing;        /* median distance of neighbouring points; 0: unknown */
-	uint32_t dropped;      /* points that were left out: not finite, or without a neighbour */
+	double spacing;   /* median distance of neighbouring points; 0: unknown, as of a mesh */
+	uint32_t dropped; /* points that were left out: not finite, or without a neighbour */
 	uint32_t grid_columns; /* 0: no range image */
 	/* Of a mesh: its faces between these points; owned; NULL: no mesh. */
 	uint32_t triangle_count;

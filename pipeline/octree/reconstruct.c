@@ -136,8 +136,9 @@ static int choose_cell(struct work *work)
 	if (longest / cell > ldexp(1, RECONSTRUCT_DEPTH_MAX))
 		return diagnostics_add(work->diagnostics, -EINVAL, NULL, 0,
 				       "leaf cubes of %g are over %d along the longest side of %g "
-				       "(in the unit of the files): choose larger ones, or correct "
-				       "the unit",
+				       "(in the unit of the files): choose larger ones (--cell, "
+				       "cell_mm of temple.ini), remove points far from the others, "
+				       "or correct the unit",
 				       cell, 1 << RECONSTRUCT_DEPTH_MAX, longest);
 	work->field.cell = report->cell = cell;
 	memcpy(work->field.origin, report->low, sizeof(work->field.origin));

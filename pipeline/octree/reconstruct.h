@@ -19,7 +19,7 @@ struct reconstruct_scan {
 struct reconstruct_options {
 	double cell;     /* side of a leaf cube in the unit of the files; 0: see depth */
 	uint32_t depth;  /* 2^depth leaf cubes along the longest side; 0: 1.5 times the spacing of
-			    the  points, or 2^8 if that is unknown */
+			    the points, or 2^8 if that is unknown, as of meshes alone */
 	bool is_closed;  /* no open edge: holes are closed by a membrane */
 	bool keep_small; /* parts of less than a thousandth of the largest one's triangles too */
 	enum range_sight sight;

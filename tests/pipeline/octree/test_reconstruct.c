@@ -308,6 +308,70 @@ static void faces_of_a_mesh_give_points(void **state)
 	scan_remove(path);
 }
 
+/* Writes a ball of half a metre radius as a cloud: points on a spiral, whose distance is everywhere
+ * the same, or at random. Without colours, or all of one. */
+static void write_cloud(const char *path, int count, bool is_even, const uint8_t *colour)
+{
+	FILE *file = fopen(path, "wb");
+
+	CHECK(file != NULL);
+	srand(1);
+	fprintf(file,
+		HEAD "element vertex %d\n" XYZ "property float nx\nproperty float ny\n"
+		     "property float nz\n%send_header\n",
+		count,
+		colour ? "property uchar red\nproperty uchar green\nproperty uchar blue\n" : "");
+	for (int i = 0; i < count; i++) {
+		const double even_z = (2 * i + 1.0) / count - 1;
+		const double z = is_even ? even_z : 2.0 * rand() / RAND_MAX - 1;
+		const double turn = is_even ? 2.399963 * i : 6.283185 * rand() / RAND_MAX;
+		const double n[3] = { sqrt(1 - z * z) * cos(turn), sqrt(1 - z * z) * sin(turn), z };
+
+		fprintf(file, "%.7f %.7f %.7f %.5f %.5f %.5f", n[0] / 2, n[1] / 2, n[2] / 2, n[0],
+			n[1], n[2]);
+		if (colour)
+			fprintf(file, " %d %d %d", colour[0], colour[1], colour[2]);
+		fputc('\n', file);
+	}
+	CHECK(fclose(file) == 0);
+}
+
+/* One point of a ball of n is alone on pi / n square metres. */
+static void cubes_are_as_fine_as_a_cloud(void **state)
+{
+	const struct reconstruct_options options = { 0 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	double worst;
+	(void)state;
+
+	for (int n = 0; n < 6; n++) {
+		const int count = n % 3 == 0 ? 500 : n % 3 == 1 ? 20000 : 400000;
+		const double apart = sqrt(3.14159265 / count);
+
+		scan_write(folder_file, "ball.ply", "", 0);
+		write_cloud(folder_file, count, n < 3, NULL);
+		scans[0] = (struct reconstruct_scan){ folder_file, NULL };
+		mesh = run(&options, 1, &report);
+		print_message("%d points %.2f mm apart: %.2f mm found, %u triangles\n", count,
+			      1000 * apart, 1000 * report.spacing, mesh.triangle_count);
+		CHECK(fabs(report.spacing / apart - 1) < 0.25);
+		CHECK(fabs(report.cell / report.spacing - 1.5) < 0.001);
+		CHECK(report.parts == 1 && report.border_edges == 0 && report.crowded_edges == 0);
+		worst = 0;
+		for (uint32_t i = 0; i < mesh.vertex_count; i++) {
+			const float *at = mesh.positions[i];
+
+			worst = fmax(worst, fabs(sqrt((double)(at[0] * at[0] + at[1] * at[1] +
+							       at[2] * at[2])) -
+						 0.5));
+		}
+		CHECK(worst < 0.2 * report.cell);
+		mesh_finish(&mesh);
+		scan_remove(folder_file);
+	}
+}
+
 /* Meshes with normals at their vertices, which most programs write, are meshes too; and one that is
  * placed in a mirror keeps its outside. */
 static void normals_and_mirrors_leave_a_mesh_what_it_is(void **state)
@@ -390,6 +454,7 @@ int main(void)
 		cmocka_unit_test(reads_clouds_with_normals_and_meshes),
 		cmocka_unit_test(a_grid_without_vertices_is_no_range_image),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
+		cmocka_unit_test(cubes_are_as_fine_as_a_cloud),
 		cmocka_unit_test(normals_and_mirrors_leave_a_mesh_what_it_is),
 		cmocka_unit_test(faces_may_come_before_their_corners),
 		cmocka_unit_test(registrations_place_the_scans),
