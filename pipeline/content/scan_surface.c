@@ -128,8 +128,10 @@ static int make(const struct surface_plan *plan, struct hash key, const char *pa
 		rc = reconstruct(&mesh, parts->scans, parts->count, &options, &report, diagnostics);
 	if (rc == 0) {
 		log_info("pipeline",
-			 "surface: %u triangles of %" PRIu64 " points, cubes of %.4g mm, %u parts",
-			 mesh.triangle_count, report.points, 1000 * report.cell, report.parts);
+			 "surface: %u triangles in %u parts of %" PRIu64 " points (%" PRIu64
+			 " left out), cubes of %.4g mm%s",
+			 mesh.triangle_count, report.parts, report.points, report.dropped,
+			 1000 * report.cell, content->cell_mm > 0 ? "" : " (cell_mm sets others)");
 		rc = save(&mesh, key, path, key_path);
 		if (rc < 0)
 			diagnostics_add(diagnostics, rc, path, 0, "%s; is the disk full?",
