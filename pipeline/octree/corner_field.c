@@ -95,6 +95,21 @@ struct batch {
 	uint32_t count, workers;
 };
 
+/* Mixes a colour with those before. Scans without colours have added to the corner's weight, not to
+ * its colour. */
+static void add_colour(struct corner_field *field, uint32_t block, uint32_t index,
+		       const uint8_t added[4], float weight)
+{
+	uint16_t *colour = field->colours[block][index];
+	const float all = colour[0] > 0 ? field->corners[block][index].weight : weight;
+
+	for (int k = 0; k < 3 && all > 0; k++) {
+		const float step = (256.0f * added[k] - colour[k]) * weight;
+
+		colour[k] = (uint16_t)fmaxf(1, rintf(colour[k] + step / all));
+	}
+}
+
 static void add_to_corner(struct corner_field *field, uint32_t block, uint32_t index,
 			  const struct splat *splat, const double from[3])
 {
@@ -111,12 +126,8 @@ static void add_to_corner(struct corner_field *field, uint32_t block, uint32_t i
 		return;
 	corner->sum += weight * (float)out;
 	corner->weight += weight;
-	for (int k = 0; k < 3 && field->has_colour && corner->weight > 0; k++) {
-		uint16_t *colour = &field->colours[block][index][k];
-		const float step = (256.0f * splat->point.colour[k] - *colour) * weight;
-
-		*colour = (uint16_t)lrintf(*colour + step / corner->weight);
-	}
+	if (field->has_colour && splat->point.colour[3] > 0)
+		add_colour(field, block, index, splat->point.colour, weight);
 }
 
 /* Adds to the corners of one block, from first to last in each direction. */
@@ -307,6 +318,7 @@ static int add_face_point(struct batch *batch, const struct range_point *const c
 	for (int i = 0; i < 3; i++)
 		for (int k = 0; k < 3; k++)
 			point.at[k] += shares[i] * corners[i]->at[k];
+	point.colour[3] = corners[0]->colour[3];
 	for (int k = 0; k < 3; k++)
 		point.colour[k] = (uint8_t)(shares[0] * corners[0]->colour[k] +
 					    shares[1] * corners[1]->colour[k] +

@@ -29,7 +29,8 @@ struct corner_field {
 	uint32_t block_count, room;
 	int32_t (*blocks)[3]; /* corner >> FIELD_BLOCK_SHIFT; owned */
 	struct field_corner (*corners)[FIELD_BLOCK_CORNERS]; /* x first; owned */
-	uint16_t (*colours)[FIELD_BLOCK_CORNERS][3]; /* times 256; owned; NULL: no colours */
+	/* Times 256, but at least 1, because 0 means none; owned; NULL: no colours. */
+	uint16_t (*colours)[FIELD_BLOCK_CORNERS][3];
 };
 
 /* Returns a number that no other block has. */

@@ -21,6 +21,8 @@ enum {
 static const float weight_least = 1e-5f;
 /* A vertex keeps that share of its edge from its ends. */
 static const float share_least = 1.0f / 256;
+/* Grey, times 256, where no scan with colours was near. */
+static const float unknown_colour = 190 * 256;
 /* Leaf cubes that the membrane's value 1 stands for. */
 static const float distance_full = 1.5f;
 
@@ -194,7 +196,7 @@ static struct corner read_corner(const struct drawing *drawing, uint32_t block, 
 		corner.is_known = seen->weight > weight_least;
 		if (corner.is_known) {
 			corner.value = seen->sum / seen->weight;
-			if (field->has_colour)
+			if (field->has_colour && field->colours[block][index][0] > 0)
 				corner.colour = field->colours[block][index];
 		}
 	}
@@ -275,7 +277,7 @@ static int add_vertex(struct drawing *drawing, const int32_t at[3], int axis,
 	for (int k = 0; k < 3 && field->has_colour; k++) {
 		const uint16_t *a = low->colour ? low->colour : high->colour;
 		const uint16_t *b = high->colour ? high->colour : low->colour;
-		const float mixed = a ? a[k] + share * ((float)b[k] - a[k]) : 190 * 256;
+		const float mixed = a ? a[k] + share * ((float)b[k] - a[k]) : unknown_colour;
 
 		mesh->colours[vertex][k] = (uint8_t)fminf(255, mixed / 256 + 0.5f);
 	}

@@ -36,7 +36,8 @@ static int take_vertex(void *data, uint32_t index, const struct ply_vertex *vert
 	*point = (struct range_point){ .weight = vertex->confidence };
 	memcpy(point->at, vertex->position, sizeof(point->at));
 	memcpy(point->normal, vertex->normal, sizeof(point->normal));
-	memcpy(point->colour, vertex->colour, sizeof(point->colour));
+	memcpy(point->colour, vertex->colour, 3);
+	point->colour[3] = collector->summary->has_colour ? 255 : 0;
 	for (int k = 0; k < 3; k++)
 		if (!(fabs(point->at[k]) <= place_most))
 			point->weight = 0;

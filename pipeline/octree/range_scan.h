@@ -23,12 +23,12 @@ enum range_sight {
 };
 
 struct range_point {
-	double at[3];     /* in the common axes */
-	float normal[3];  /* unit vector, out of the surface */
-	float towards[3]; /* unit vector to the scanner; 0: not known where that stood */
-	float weight;     /* confidence, above 0 */
-	float spacing;    /* distance to the farthest of its neighbours; 0: unknown */
-	uint8_t colour[4];
+	double at[3];      /* in the common axes */
+	float normal[3];   /* unit vector, out of the surface */
+	float towards[3];  /* unit vector to the scanner; 0: not known where that stood */
+	float weight;      /* confidence, above 0 */
+	float spacing;     /* distance to the farthest of its neighbours; 0: unknown */
+	uint8_t colour[4]; /* the fourth: 255, or 0 if the scan has no colours */
 };
 
 struct range_scan {

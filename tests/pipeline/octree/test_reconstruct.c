@@ -372,6 +372,34 @@ static void cubes_are_as_fine_as_a_cloud(void **state)
 	}
 }
 
+/* One that has none beside it must not make it paler; and black is a colour. */
+static void a_scan_without_colours_leaves_those_of_others(void **state)
+{
+	static const uint8_t colours[2][3] = { { 180, 60, 20 }, { 0, 0, 0 } };
+	const struct reconstruct_options options = { .cell = 0.05 };
+	struct reconstruct_report report;
+	struct mesh mesh;
+	char plain[320];
+	(void)state;
+
+	scan_write(folder_file, "coloured.ply", "", 0);
+	snprintf(plain, sizeof(plain), "%s-plain.ply", folder_file);
+	write_cloud(plain, 20000, true, NULL);
+	for (int i = 0; i < 4; i++) {
+		const uint8_t *colour = colours[i / 2];
+
+		write_cloud(folder_file, 20000, true, colour);
+		scans[i % 2] = (struct reconstruct_scan){ folder_file, NULL };
+		scans[1 - i % 2] = (struct reconstruct_scan){ plain, NULL };
+		mesh = run(&options, 2, &report);
+		for (uint32_t v = 0; v < mesh.vertex_count; v++)
+			for (int k = 0; k < 3; k++)
+				CHECK(abs(mesh.colours[v][k] - colour[k]) <= 1);
+		mesh_finish(&mesh);
+	}
+	scan_remove(folder_file);
+}
+
 /* Meshes with normals at their vertices, which most programs write, are meshes too; and one that is
  * placed in a mirror keeps its outside. */
 static void normals_and_mirrors_leave_a_mesh_what_it_is(void **state)
@@ -455,6 +483,7 @@ int main(void)
 		cmocka_unit_test(a_grid_without_vertices_is_no_range_image),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
 		cmocka_unit_test(cubes_are_as_fine_as_a_cloud),
+		cmocka_unit_test(a_scan_without_colours_leaves_those_of_others),
 		cmocka_unit_test(normals_and_mirrors_leave_a_mesh_what_it_is),
 		cmocka_unit_test(faces_may_come_before_their_corners),
 		cmocka_unit_test(registrations_place_the_scans),
