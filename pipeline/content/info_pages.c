@@ -118,6 +118,26 @@ static void check_attributes(struct page_check *check, xmlNode *node)
 	}
 }
 
+/* Cells beyond those that an article may have would be lost. */
+static void check_row(struct page_check *check, xmlNode *row)
+{
+	int cells = 0;
+
+	for (const xmlNode *node = row->children; node; node = node->next) {
+		const char *name = (const char *)node->name;
+		const enum html_role role = node->type == XML_ELEMENT_NODE
+						    ? html_element(name, strlen(name))->role
+						    : HTML_INLINE;
+
+		cells += role == HTML_CELL || role == HTML_HEADING_CELL;
+	}
+	if (cells > ARTICLE_COLUMNS_MAX)
+		diagnostics_add(check->draft->diagnostics, -EINVAL, check->file, node_line(row),
+				"a row of %d cells: a table has at most %d columns on a terminal; "
+				"make two tables of it, or turn its rows into columns",
+				cells, ARTICLE_COLUMNS_MAX);
+}
+
 static int check_element(struct page_check *check, xmlNode *node)
 {
 	const char *name = (const char *)node->name;
@@ -130,6 +150,8 @@ static int check_element(struct page_check *check, xmlNode *node)
 	check_attributes(check, node);
 	if (strcmp(name, "a") == 0)
 		check_link(check, node);
+	if (strcmp(name, "tr") == 0)
+		check_row(check, node);
 	return strcmp(name, "img") == 0 ? check_image(check, node) : 0;
 }
 

@@ -199,6 +199,9 @@ static void names_the_line_of_a_bad_page(void **state)
 		{ "<p>x</p>\n\n\n<iframe></iframe>", "<iframe>", 4 },
 		{ "<p>x</p>\n<b\nclass=y " TEN TEN TEN TEN TEN TEN "a b c d>z</b>",
 		  "a tag with 65 attributes", 2 },
+		{ "<table>\n<tr><td>1<td>2<td>3<td>4<td>5<td>6<td>7<td>8</tr>\n"
+		  "<tr><th>1<td>2<td>3<td>4<td>5<td>6<td>7<td>8<td>9</tr></table>",
+		  "a row of 9 cells", 3 },
 		{ "  \n <p> </p>", "no text", 1 },
 		{ "<title>x</title>", "no text", 1 },
 		{ "<p>\xff\xfe</p>", "UTF-8", 0 },
