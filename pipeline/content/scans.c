@@ -286,6 +286,26 @@ static int save_reports(const struct scans *scans, struct import_report *reports
 		      : scan_reports_save(path, scans->key, reports, scans->content->scan_count);
 }
 
+/* A scan that is still being copied would be kept as it was half-way, under the key of the time
+ * before. After a change the next question for the key looks anew. */
+static int check_unchanged(struct scans *scans, struct diagnostics *diagnostics)
+{
+	const struct hash before = scans->key;
+	int rc = make_key(scans);
+
+	if (rc == 0 && !hash_equal(scans->key, before))
+		rc = -ESTALE;
+	scans->has_key = rc == 0;
+	if (rc == -ESTALE)
+		return diagnostics_add(
+			diagnostics, rc, scans->content->folder, 0,
+			"a scan or a file beside it was changed while it was read; "
+			"if it is being copied, wait for the end, then do this again");
+	return rc < 0 ? diagnostics_add(diagnostics, rc, scans->content->folder, 0,
+					"its files cannot be listed: %s", strerror(-rc))
+		      : 0;
+}
+
 static int import_and_save(struct scans *scans, const char *path, struct diagnostics *diagnostics)
 {
 	struct import_report *reports = calloc(CONTENT_SCANS_MAX, sizeof(*reports));
@@ -293,6 +313,8 @@ static int import_and_save(struct scans *scans, const char *path, struct diagnos
 
 	if (rc == 0)
 		rc = close_surface(&scans->mesh, scans->content, diagnostics);
+	if (rc == 0)
+		rc = check_unchanged(scans, diagnostics);
 	if (rc == 0) {
 		rc = mesh_file_move(&scans->mesh, scans->key, path);
 		if (rc < 0)

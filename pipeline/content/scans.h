@@ -53,7 +53,7 @@ const struct scans_shape *scans_known_shape(struct scans *scans);
 
 /* Gets the mesh: from .work/mesh if its key matches, otherwise imported, repaired and saved there.
  * It stays in memory until scans_drop_mesh; *out is borrowed until then. Negative errno, with
- * diagnostic. */
+ * diagnostic; -ESTALE: a scan was changed since its key was made, so nothing is kept. */
 must_check int scans_get_mesh(struct scans *scans, const struct mesh **out,
 			      struct diagnostics *diagnostics);
 /* Reads what the import reported of each scan, in the order of temple.ini; kept in .work/imported.

@@ -1,6 +1,7 @@
 /* What a build takes of .work, and what it makes again. */
 #include "pipeline/content/scans.h"
 
+#include <errno.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -129,6 +130,32 @@ static void pictures_are_known_even_if_the_reports_were_lost(void **state)
 	content_release(&content);
 }
 
+/* Half a file, as it is while it is copied, must not stay for the whole one. */
+static void a_scan_that_changes_meanwhile_is_not_kept(void **state)
+{
+	static const char half[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+	struct diagnostics diagnostics = { 0 };
+	struct content content;
+	struct scans *scans;
+	const struct mesh *mesh;
+	struct hash key, later;
+	char folder[256];
+	(void)state;
+
+	snprintf(folder, sizeof(folder), "%.*s", (int)(strrchr(ini_path, '/') - ini_path),
+		 ini_path);
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_key(scans, &key, &diagnostics) == 0);
+	scan_write_beside(ini_path, "scan.obj", half, strlen(half));
+	CHECK(scans_get_mesh(scans, &mesh, &diagnostics) == -ESTALE && !mesh);
+	CHECK(strstr(diagnostics.first.text, "changed while it was read"));
+	CHECK(scans_key(scans, &later, &diagnostics) == 0 && !hash_equal(key, later));
+	CHECK(scans_get_mesh(scans, &mesh, &diagnostics) == 0 && mesh->triangle_count == 1);
+	scans_destroy(scans);
+	content_release(&content);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -138,6 +165,8 @@ int main(void)
 						make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(a_picture_of_a_page_makes_no_scan_anew, make_folder,
 						remove_folder),
+		cmocka_unit_test_setup_teardown(a_scan_that_changes_meanwhile_is_not_kept,
+						make_folder, remove_folder),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
