@@ -68,7 +68,8 @@ bool surface_is_made(struct hash key, const struct content *content)
 	bool same;
 
 	key_text(expected, key);
-	if (content_work_path(content, surface_name, path) < 0 || access(path, R_OK) < 0 ||
+	/* A file that a fault of the disk cut off is made again. */
+	if (content_work_path(content, surface_name, path) < 0 || import_check(path, NULL) < 0 ||
 	    content_work_path(content, key_name, path) < 0)
 		return false;
 	buffer_init(&file, sizeof(expected));

@@ -202,6 +202,25 @@ static void it_is_on_the_disk_before_its_key(void **state)
 	CHECK(when_synced(number_of("surface")) < SYNCS_MAX);
 }
 
+static void one_that_was_cut_off_is_made_again(void **state)
+{
+	struct built *built;
+	char path[320];
+	(void)state;
+
+	write_ini("[hierarchy]\ncell_mm = 60\n");
+	finish(build());
+	snprintf(path, sizeof(path), "%s/.work/surface.ply", folder);
+	CHECK(truncate(path, 5000) == 0);
+	/* another colour makes the mesh anew, from the surface */
+	write_ini("colours = #102030\n[hierarchy]\ncell_mm = 60\n");
+	built = build();
+	if (built->rc < 0)
+		fail_msg("%s", diagnostics_cause(&built->diagnostics, built->rc));
+	CHECK(built->mesh->scans[1].triangle_count > 1000);
+	finish(built);
+}
+
 /* A ball and a triangle, which becomes a sheet; both keep the numbers of their faces. */
 static void surface_octree_closes_all_scans(void **state)
 {
@@ -257,6 +276,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(it_is_made_again_only_if_its_own_inputs_change,
 						make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(it_is_on_the_disk_before_its_key, make_folder,
+						remove_folder),
+		cmocka_unit_test_setup_teardown(one_that_was_cut_off_is_made_again, make_folder,
 						remove_folder),
 		cmocka_unit_test_setup_teardown(surface_octree_closes_all_scans, make_folder,
 						remove_folder),
