@@ -122,6 +122,7 @@ void coarse_fill_look(struct coarse_fill *fill, const struct corner_field *field
 		double from[3];
 		bool known = false;
 
+		spill_pass(i);
 		for (int k = 0; k < 3; k++) {
 			from[k] = ((point->at[k] - field->origin[k]) / field->cell - fill->low[k]) /
 				  side;

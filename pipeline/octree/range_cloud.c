@@ -27,11 +27,13 @@ static void measure(struct cloud_grid *grid, const struct range_point *points, u
 
 	for (int k = 0; k < 3; k++)
 		grid->low[k] = INFINITY;
-	for (uint32_t i = 0; i < count; i++)
+	for (uint32_t i = 0; i < count; i++) {
 		for (int k = 0; k < 3; k++) {
 			grid->low[k] = fmin(grid->low[k], points[i].at[k]);
 			high[k] = fmax(high[k], points[i].at[k]);
 		}
+		spill_pass(i);
+	}
 	for (int k = 0; k < 3; k++)
 		longest = fmax(longest, high[k] - grid->low[k]);
 	grid->along = (uint32_t)fmax(1, fmin(CELLS_MAX, wanted));

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/spill.h"
 #include "geometry/vec.h"
 
 /* An edge longer than so many median distances crosses a step in depth. */
@@ -62,6 +63,7 @@ enum range_sight range_grid_sight(const struct range_grid *grid, const struct ra
 	for (uint64_t i = 0; i < (uint64_t)grid->columns * grid->rows; i++) {
 		double place[3];
 
+		spill_pass(i);
 		if (grid->cells[i] == RANGE_NO_POINT)
 			continue;
 		/* Sums of squares far from the origin lose digits. */
@@ -211,6 +213,7 @@ int range_grid_orient(double *spacing, const struct range_grid *grid, struct ran
 	for (uint64_t i = 0; i < (uint64_t)grid->columns * grid->rows; i++) {
 		const uint32_t point = grid->cells[i];
 
+		spill_pass(i);
 		if (point == RANGE_NO_POINT || seen[point])
 			continue;
 		seen[point] = 1;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/spill.h"
 #include "geometry/vec.h"
 #include "pipeline/import/ply.h"
 #include "pipeline/octree/range_cloud.h"
@@ -42,6 +43,7 @@ static int take_vertex(void *data, uint32_t index, const struct ply_vertex *vert
 		if (!(fabs(point->at[k]) <= place_most))
 			point->weight = 0;
 	point->weight = point->weight > 0 ? fminf(point->weight, weight_most) : 0;
+	spill_pass(index);
 	return 0;
 }
 
@@ -50,6 +52,7 @@ static int take_cell(void *data, uint64_t index, int64_t vertex)
 	struct collector *collector = data;
 
 	collector->grid.cells[index] = vertex < 0 ? RANGE_NO_POINT : (uint32_t)vertex;
+	spill_pass(index);
 	return 0;
 }
 
@@ -108,21 +111,26 @@ static int allocate(struct collector *collector, bool is_grid)
 	const struct ply_summary *summary = collector->summary;
 	const uint64_t cells = (uint64_t)summary->grid_columns * summary->grid_rows;
 
-	collector->points = malloc(summary->vertex_count * sizeof(*collector->points));
+	collector->points = spill_alloc(summary->vertex_count * sizeof(*collector->points));
+	if (!collector->points)
+		return -errno;
 	if (is_grid) {
 		collector->grid.columns = summary->grid_columns;
 		collector->grid.rows = summary->grid_rows;
-		collector->grid.cells = malloc(cells * sizeof(*collector->grid.cells));
+		collector->grid.cells = spill_alloc(cells * sizeof(*collector->grid.cells));
+		if (!collector->grid.cells)
+			return -errno;
 	} else if (summary->face_count > 0) {
 		collector->face_normals =
-			calloc(summary->vertex_count, sizeof(*collector->face_normals));
+			spill_alloc(summary->vertex_count * sizeof(*collector->face_normals));
+		if (!collector->face_normals)
+			return -errno;
 	}
-	if (!collector->points || (is_grid && !collector->grid.cells) ||
-	    (!is_grid && summary->face_count > 0 && !collector->face_normals))
-		return -ENOMEM;
 	/* Without a range_grid, the vertices themselves are the cells. */
-	for (uint64_t i = 0; is_grid && i < cells; i++)
+	for (uint64_t i = 0; is_grid && i < cells; i++) {
 		collector->grid.cells[i] = (uint32_t)i;
+		spill_pass(i);
+	}
 	return 0;
 }
 
@@ -148,6 +156,7 @@ static void set_sight(struct collector *collector, enum range_sight sight)
 				sight == RANGE_SIGHT_ORIGIN ? -(float)point->at[k] : axis[k];
 		if (!isfinite(vec_normalise(point->towards)))
 			memset(point->towards, 0, sizeof(point->towards));
+		spill_pass(i);
 	}
 }
 
@@ -158,6 +167,7 @@ static void drop_missing(struct collector *collector)
 	for (uint64_t i = 0; i < (uint64_t)grid->columns * grid->rows; i++) {
 		const struct range_point *point;
 
+		spill_pass(i);
 		if (grid->cells[i] == RANGE_NO_POINT)
 			continue;
 		point = &collector->points[grid->cells[i]];
@@ -198,12 +208,15 @@ static int orient(struct collector *collector, enum range_sight sight, double *s
 	if (collector->grid.cells)
 		return range_grid_orient(spacing, &collector->grid, collector->points,
 					 (uint32_t)collector->summary->vertex_count);
-	for (uint32_t t = 0; t < collector->triangle_count; t++)
+	for (uint32_t t = 0; t < collector->triangle_count; t++) {
 		add_face_normal(collector, collector->triangles[t]);
+		spill_pass(t);
+	}
 	for (uint64_t i = 0; i < collector->summary->vertex_count; i++) {
 		struct range_point *point = &collector->points[i];
 		double length = 0;
 
+		spill_pass(i);
 		for (int k = 0; k < 3 && collector->triangles; k++)
 			length = fmax(length, fabs(collector->face_normals[i][k]));
 		for (int k = 0; k < 3 && collector->triangles; k++)
@@ -256,12 +269,11 @@ static int keep_good(struct range_scan *scan, struct collector *collector,
 		     const struct transform *transform)
 {
 	const uint32_t all = (uint32_t)collector->summary->vertex_count;
-	uint32_t *numbers = malloc((all + (size_t)1) * sizeof(*numbers));
+	uint32_t *numbers = spill_alloc((all + (size_t)1) * sizeof(*numbers));
 	double scale = 0;
 
 	if (!numbers)
-		return -ENOMEM;
-
+		return -errno;
 	for (int k = 0; k < 3 && transform; k++)
 		scale += transform->rows[k][0] * transform->rows[k][0];
 	scale = transform ? sqrt(scale) : 1;
@@ -269,6 +281,7 @@ static int keep_good(struct range_scan *scan, struct collector *collector,
 	for (uint32_t i = 0; i < all; i++) {
 		struct range_point *point = &collector->points[i];
 
+		spill_pass(i);
 		numbers[i] = RANGE_NO_POINT;
 		if (!(point->weight > 0))
 			continue;
@@ -286,7 +299,7 @@ static int keep_good(struct range_scan *scan, struct collector *collector,
 	collector->points = NULL;
 	if (collector->triangles)
 		keep_triangles(scan, collector, numbers, transform && transform_mirrors(transform));
-	free(numbers);
+	spill_free(numbers);
 	return 0;
 }
 
@@ -327,9 +340,9 @@ int range_scan_read(struct range_scan *out, const char *path, const struct trans
 	if (rc == -ENOMEM)
 		diagnostics_add(diagnostics, rc, path, 0, "too large for this machine's memory");
 	ply_close(ply);
-	free(collector.points);
-	free(collector.grid.cells);
-	free(collector.face_normals);
+	spill_free(collector.points);
+	spill_free(collector.grid.cells);
+	spill_free(collector.face_normals);
 	free(collector.triangles);
 	if (rc < 0)
 		range_scan_finish(out);
@@ -340,7 +353,7 @@ void range_scan_finish(struct range_scan *scan)
 {
 	if (!scan)
 		return;
-	free(scan->points);
+	spill_free(scan->points);
 	free(scan->triangles);
 	*scan = (struct range_scan){ 0 };
 }

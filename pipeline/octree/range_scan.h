@@ -1,6 +1,7 @@
 /* Reads what a scanner saw from one place as oriented points: a range image (a PLY with a
  * range_grid, or with as many vertices as num_cols times num_rows), a cloud with normals, or a
- * mesh, whose vertices are the points (paper P1, section 4.2). One scan is in memory at a time. */
+ * mesh, whose vertices are the points (paper P1, section 4.2). Its points may be larger than memory
+ * (base/spill.h). */
 #ifndef GOPURA_PIPELINE_OCTREE_RANGE_SCAN_H
 #define GOPURA_PIPELINE_OCTREE_RANGE_SCAN_H
 

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/spill.h"
 #include "pipeline/import/mesh_edges.h"
 #include "pipeline/octree/coarse_fill.h"
 #include "pipeline/octree/cube_surface.h"
@@ -53,11 +54,13 @@ static void measure_scan(struct work *work, const struct range_scan *scan)
 {
 	struct reconstruct_report *report = work->report;
 
-	for (uint32_t i = 0; i < scan->count; i++)
+	for (uint32_t i = 0; i < scan->count; i++) {
 		for (int k = 0; k < 3; k++) {
 			report->low[k] = fmin(report->low[k], scan->points[i].at[k]);
 			report->high[k] = fmax(report->high[k], scan->points[i].at[k]);
 		}
+		spill_pass(i);
+	}
 	report->points += scan->count;
 	report->dropped += scan->dropped;
 	report->range_images += scan->grid_columns > 0;
@@ -255,8 +258,13 @@ int reconstruct(struct mesh *out, const struct reconstruct_scan *scans, uint32_t
 	else if (rc == -ENOSPC)
 		diagnostics_add(
 			diagnostics, rc, NULL, 0,
-			"the disk has no room for the distances; make some, set TMPDIR to a "
-			"larger disk, or choose larger leaf cubes");
+			"the disk has no room for the points and distances; make some, set TMPDIR "
+			"to a larger disk, or choose larger leaf cubes");
+	else if (rc == -ENOENT || rc == -ENOTDIR || rc == -EACCES || rc == -EROFS)
+		diagnostics_add(
+			diagnostics, rc, NULL, 0,
+			"no temporary file can be made in TMPDIR, or without it in "
+			"/var/tmp; set TMPDIR to a folder on a disk that may be written to");
 	else if (rc < 0)
 		diagnostics_add(diagnostics, rc, NULL, 0, "%s; choose larger leaf cubes",
 				strerror(-rc));

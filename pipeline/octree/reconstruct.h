@@ -1,6 +1,6 @@
 /* Makes one surface of aligned scans (paper P1, chapter 4): range images, clouds with normals, or
- * meshes. The scans are read twice, one at a time: for the box, and for the distances. Memory: one
- * scan, and what base/spill.h keeps resident of the rest. docs/octree.md has figures. */
+ * meshes. The scans are read twice, one at a time: for the box, and for the distances. Memory: what
+ * base/spill.h keeps resident of a scan and of the distances. docs/octree.md has figures. */
 #ifndef GOPURA_PIPELINE_OCTREE_RECONSTRUCT_H
 #define GOPURA_PIPELINE_OCTREE_RECONSTRUCT_H
 

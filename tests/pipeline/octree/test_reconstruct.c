@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/resource.h>
 
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
@@ -372,6 +373,52 @@ static void cubes_are_as_fine_as_a_cloud(void **state)
 	}
 }
 
+static rlim_t data_bytes(void)
+{
+	unsigned long pages = 0;
+	FILE *file = fopen("/proc/self/statm", "r");
+
+	CHECK(file && fscanf(file, "%*s %*s %*s %*s %*s %lu", &pages) == 1 && fclose(file) == 0);
+	return pages * (rlim_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Its points take 128 MB, of 100 more that the process may have. */
+static void a_cloud_may_be_larger_than_memory(void **state)
+{
+	enum { POINTS = 2000000 };
+	struct diagnostics diagnostics = { 0 };
+	struct rlimit before, little;
+	struct range_scan scan;
+	FILE *file;
+	int rc;
+	(void)state;
+
+	scan_write(folder_file, "large.ply", "", 0);
+	file = fopen(folder_file, "wb");
+	CHECK(file != NULL);
+	fprintf(file,
+		"ply\nformat binary_little_endian 1.0\nelement vertex %d\n" XYZ
+		"property float nx\nproperty float ny\nproperty float nz\nend_header\n",
+		POINTS);
+	for (int i = 0; i < POINTS; i++) {
+		const float place[6] = { (float)(i % 2000), (float)(i / 2000), 0, 0, 0, 1 };
+
+		CHECK(fwrite(place, sizeof(place), 1, file) == 1);
+	}
+	CHECK(fclose(file) == 0 && getrlimit(RLIMIT_DATA, &before) == 0);
+	little = before;
+	little.rlim_cur = data_bytes() + (100 << 20);
+	CHECK(setrlimit(RLIMIT_DATA, &little) == 0);
+	rc = range_scan_read(&scan, folder_file, NULL, RANGE_SIGHT_AUTO, &diagnostics);
+	CHECK(setrlimit(RLIMIT_DATA, &before) == 0);
+	if (rc < 0)
+		fail_msg("%s", diagnostics_cause(&diagnostics, rc));
+	CHECK(scan.count == POINTS && scan.points[POINTS - 1].at[0] == 1999);
+	CHECK(fabs(scan.spacing - 1) < 0.25);
+	range_scan_finish(&scan);
+	scan_remove(folder_file);
+}
+
 /* One that has none beside it must not make it paler; and black is a colour. */
 static void a_scan_without_colours_leaves_those_of_others(void **state)
 {
@@ -483,6 +530,7 @@ int main(void)
 		cmocka_unit_test(a_grid_without_vertices_is_no_range_image),
 		cmocka_unit_test(faces_of_a_mesh_give_points),
 		cmocka_unit_test(cubes_are_as_fine_as_a_cloud),
+		cmocka_unit_test(a_cloud_may_be_larger_than_memory),
 		cmocka_unit_test(a_scan_without_colours_leaves_those_of_others),
 		cmocka_unit_test(normals_and_mirrors_leave_a_mesh_what_it_is),
 		cmocka_unit_test(faces_may_come_before_their_corners),
