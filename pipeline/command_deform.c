@@ -155,5 +155,8 @@ int command_deform(int argc, char **argv)
 	if (argc - optind != 1)
 		return command_wrong(argv[0], "name one scan", "");
 	settings.scan = argv[optind];
+	if (command_check_out(argv[0], settings.out, settings.scan) < 0 ||
+	    command_check_out(argv[0], settings.out, settings.with) < 0)
+		return EXIT_FAILURE;
 	return run(&settings);
 }

@@ -108,6 +108,18 @@ static int list_inputs(struct inputs *inputs, char **paths, int count)
 	return rc;
 }
 
+/* Checks --out against all that is read: the scans, and the files that place them. */
+static int check_out(const char *out, const struct inputs *inputs, char **paths, int count)
+{
+	int rc = 0;
+
+	for (int i = 0; i < count && rc == 0; i++)
+		rc = command_check_out("reconstruct", out, paths[i]);
+	for (uint32_t i = 0; i < inputs->count && rc == 0; i++)
+		rc = command_check_out("reconstruct", out, inputs->scans[i].path);
+	return rc;
+}
+
 static void inputs_finish(struct inputs *inputs)
 {
 	for (uint32_t i = 0; i < inputs->alignment_count; i++)
@@ -176,6 +188,8 @@ static int run(const struct settings *settings, char **paths, int count)
 	const int64_t began_ms = clock_now_ms();
 	int rc = list_inputs(&inputs, paths, count);
 
+	if (rc == 0)
+		rc = check_out(settings->out, &inputs, paths, count);
 	if (settings->budget > 0) {
 		options.leaf = budget_leaf_add;
 		options.data = &leaves;

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 int command_wrong(const char *command, const char *what, const char *value)
 {
@@ -22,6 +24,30 @@ bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *o
 	*out = strtoull(text, &end, 10);
 	return text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0 && *out >= least &&
 	       *out <= most;
+}
+
+int command_check_out(const char *command, const char *out, const char *input)
+{
+	const char *slash = strrchr(out, '/');
+	struct stat of_out, of_input;
+	char folder[PATH_MAX];
+	int rc;
+
+	if (stat(out, &of_out) == 0 && stat(input, &of_input) == 0 &&
+	    of_out.st_dev == of_input.st_dev && of_out.st_ino == of_input.st_ino) {
+		fprintf(stderr,
+			"gopura-content %s: %s is read, and would be lost; give another --out\n",
+			command, input);
+		return -EEXIST;
+	}
+	snprintf(folder, sizeof(folder), "%.*s", slash ? (int)(slash - out) + 1 : 1,
+		 slash ? out : ".");
+	if (access(folder, W_OK) == 0)
+		return 0;
+	rc = -errno;
+	fprintf(stderr, "gopura-content %s: %s: %s; make the folder, or give another --out\n",
+		command, folder, strerror(-rc));
+	return rc;
 }
 
 bool command_size(const char *text, uint64_t *out)

@@ -54,6 +54,10 @@ int command_wrong(const char *command, const char *what, const char *value);
  * otherwise; *out is then undefined. */
 bool command_number(const char *text, uint64_t least, uint64_t most, uint64_t *out);
 
+/* Checks, before the work, a file that is to be written at its end: it must not be `input`, which
+ * would be lost, and its folder must be there. Prints why not. Returns 0 or a negative errno. */
+must_check int command_check_out(const char *command, const char *out, const char *input);
+
 /* Parses a number of bytes: a number, of which parts may follow a point, and B, kB, MB or GB, which
  * are powers of 1000, with or without a space between. It is at least 1 byte. Returns false
  * otherwise; *out is then undefined. */
