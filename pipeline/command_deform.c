@@ -38,6 +38,13 @@ struct settings {
 	uint32_t jobs;
 };
 
+static bool ends_with(const char *name, const char *extension)
+{
+	const char *end = strrchr(name, '.');
+
+	return end && strcmp(end, extension) == 0;
+}
+
 static void print_measure(const char *when, const struct mesh_measure *m, const double length[3])
 {
 	printf("%-7s box %g x %g x %g, lines through its middle %.6g, %.6g, %.6g\n", when,
@@ -67,8 +74,7 @@ static void print_report(const struct deform_report *report, int64_t began_ms)
 /* A scan without colours gets none, and one with textures loses them in a PLY. */
 static int write(struct mesh *mesh, const struct import_report *imported, const char *out)
 {
-	const char *end = strrchr(out, '.');
-	const bool is_obj = end && strcmp(end, ".obj") == 0;
+	const bool is_obj = ends_with(out, ".obj");
 	uint8_t(*colours)[4] = mesh->colours;
 	int rc;
 
@@ -152,6 +158,9 @@ int command_deform(int argc, char **argv)
 	if (!settings.with || !settings.out)
 		return command_wrong(argv[0],
 				     "give --with FILE.json and --out FILE.ply or FILE.obj", "");
+	if (!ends_with(settings.out, ".ply") && !ends_with(settings.out, ".obj"))
+		return command_wrong(argv[0], "give --out FILE.ply or FILE.obj, not ",
+				     settings.out);
 	if (argc - optind != 1)
 		return command_wrong(argv[0], "name one scan", "");
 	settings.scan = argv[optind];

@@ -69,10 +69,31 @@ static void a_scan_is_never_written_over(void **state)
 	scan_remove(scan);
 }
 
+/* A PLY called upright.OBJ or upright.stl is read by no other program. */
+static void what_deform_writes_is_as_its_name_says(void **state)
+{
+	static const char *const names[] = { "bent.OBJ", "bent.stl", "bent" };
+	char scan[256], with[300], out[300];
+	(void)state;
+
+	scan_write(scan, "box.ply", box, strlen(box));
+	snprintf(with, sizeof(with), "%.*swith.json", (int)(strrchr(scan, '/') - scan) + 1, scan);
+	scan_write_beside(scan, "with.json", plan, strlen(plan));
+	for (size_t i = 0; i < ARRAY_COUNT(names); i++) {
+		snprintf(out, sizeof(out), "%.*s%s", (int)(strrchr(scan, '/') - scan) + 1, scan,
+			 names[i]);
+		CHECK(run(command_deform,
+			  (char *[]){ "deform", "--with", with, "--out", out, scan, NULL }) == 2);
+		CHECK(access(out, F_OK) < 0);
+	}
+	scan_remove(scan);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_scan_is_never_written_over),
+		cmocka_unit_test(what_deform_writes_is_as_its_name_says),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
