@@ -273,6 +273,7 @@ static int settle_colours(struct mesh *mesh, const struct import_options *option
  * used up by the distance. */
 static void judge_box(struct mesh *mesh, const char *path, struct import_report *report)
 {
+	static const float rounding = 6e-8f, seen_m = 0.005f; /* by a visitor beside a wall */
 	float far_m = 0, size_m = 0;
 
 	mesh_box(mesh, report->low_m, report->high_m);
@@ -280,12 +281,11 @@ static void judge_box(struct mesh *mesh, const char *path, struct import_report 
 		far_m = fmaxf(far_m, fmaxf(fabsf(report->low_m[k]), fabsf(report->high_m[k])));
 		size_m = fmaxf(size_m, report->high_m[k] - report->low_m[k]);
 	}
-	if (far_m > 1000 * size_m)
-		diagnostics_add(
-			&report->warning, 0, path, 0,
-			"it lies %.0f m from the origin but is only %.2f m large, so places "
-			"are known to %.1f mm; move it to the origin before export",
-			far_m, size_m, 1000 * far_m * 6e-8);
+	if (far_m > 1000 * size_m || rounding * far_m > seen_m)
+		diagnostics_add(&report->warning, 0, path, 0,
+				"it lies %.0f m from the origin and is %.2f m large, so places are "
+				"known to %.1f mm; move it to the origin before export",
+				far_m, size_m, 1000 * rounding * far_m);
 }
 
 static int finish(struct mesh *mesh, const char *path, bool is_indexed,

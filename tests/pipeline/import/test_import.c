@@ -586,6 +586,9 @@ static void what_was_left_out_is_a_warning(void **state)
 		  "copy" },
 		{ "line.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl 1 2\np 3\n",
 		  "line.obj: 2 points or lines in it were left out" },
+		{ "site.obj", "v 4000000 0 0\nv 4005000 0 0\nv 4005000 5000 0\nf 1 2 3\n",
+		  "site.obj: it lies 4005000 m from the origin and is 5000.00 m large, so places "
+		  "are known to 240.3 mm" },
 		{ "edge.ply",
 		  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
 		  "property float z\nelement face 3\nproperty list uchar int vertex_indices\n"
