@@ -101,7 +101,9 @@ static int judge(const struct ply_summary *summary, int is_grid, const char *pat
 			diagnostics, -EBADMSG, path, 0,
 			"its points have neither a range_grid nor normals (nx ny nz): "
 			"which side is outside is unknown; export the range image, or "
-			"compute normals (MeshLab: Compute normals for point sets)");
+			"compute normals that look outwards (MeshLab: Compute normals for point "
+			"sets, with Flip normals w.r.t. viewpoint; CloudCompare: Normals, Compute "
+			"and Orient)");
 	return 0;
 }
 
