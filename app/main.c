@@ -26,7 +26,7 @@ int main(int argc, char **argv)
 		break;
 	}
 	if (kiosk.options.self_test)
-		return self_test_run(&kiosk.options) ? EXIT_SUCCESS : EXIT_FAILURE;
+		return self_test_run(&kiosk.options);
 	if (kiosk.options.safe_page) {
 		rc = safe_mode_run(&kiosk.options);
 	} else {

@@ -40,7 +40,8 @@ struct self_test {
 	struct profile profile;
 	struct display *display; /* NULL: it could not be opened */
 	char folder[PATH_MAX];   /* of the state; "": it cannot be written */
-	bool failed;
+	bool settings_failed;    /* or the trust root */
+	bool failed;             /* something else */
 };
 
 static void say(struct self_test *test, bool good, const char *what, const char *text, ...)
@@ -56,7 +57,10 @@ static void say(struct self_test *test, bool good, const char *what, const char 
 	putchar('\n');
 	fflush(stdout);
 	va_end(args);
-	test->failed |= !good;
+	if (strcmp(what, "settings") == 0 || strcmp(what, "trust") == 0)
+		test->settings_failed |= !good;
+	else
+		test->failed |= !good;
 }
 
 /* ---- settings */
@@ -411,7 +415,7 @@ static void check_trust(struct self_test *test)
 	buffer_finish(&file);
 }
 
-bool self_test_run(struct options *options)
+int self_test_run(struct options *options)
 {
 	struct self_test test = { .options = options };
 
@@ -422,5 +426,7 @@ bool self_test_run(struct options *options)
 	check_panel(&test);
 	check_gpu(&test);
 	display_destroy(test.display);
-	return !test.failed;
+	if (test.failed)
+		return EXIT_FAILURE;
+	return test.settings_failed ? SELF_TEST_STATUS_SETTINGS : EXIT_SUCCESS;
 }

@@ -3,13 +3,15 @@
 #ifndef GOPURA_APP_MODES_SELF_TEST_H
 #define GOPURA_APP_MODES_SELF_TEST_H
 
-#include <stdbool.h>
-
 #include "app/settings/options.h"
 
+/* Only settings or the trust root failed: another system would have the same faults. */
+enum { SELF_TEST_STATUS_SETTINGS = 3 };
+
 /* Completes *options from gopura.conf and prints one line per check to standard output: "ok" or
- * "fail", what was checked, what was found and, if it failed, what to do. Returns whether all
- * checks passed. Do not run it beside a running kiosk: only one program can use the panel. */
-must_check bool self_test_run(struct options *options);
+ * "fail", what was checked, what was found and, if it failed, what to do. Returns the program's
+ * exit status: EXIT_SUCCESS if all checks passed, SELF_TEST_STATUS_SETTINGS, or EXIT_FAILURE. Do
+ * not run it beside a running kiosk: only one program can use the panel. */
+must_check int self_test_run(struct options *options);
 
 #endif

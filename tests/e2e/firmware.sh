@@ -233,6 +233,10 @@ loader set B_OK=0
 : >"$work/asked"
 ! script gopura-good >"$work/said" || fail "a self-test that failed: $(cat "$work/said")"
 nothing_asked "it goes back to a slot that does not work"
+# Faults of gopura.conf, which may be on a stick that comes later, and a root that has expired do not keep an update out.
+echo 3 >"$root/run/gopura-kiosk/self-test"
+found_good
+said 'is good' || fail "a fault of gopura.conf: $(cat "$work/said")"
 echo 0 >"$root/run/gopura-kiosk/self-test"
 # A damaged one is replaced by one that is whole.
 runs B v200 200
