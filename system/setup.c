@@ -237,6 +237,8 @@ static void put_uses(struct writing *writing, const char *section, bool has_ntp)
 		buffer_print(&writing->text, "UseNTP=no\n");
 }
 
+/* To a DHCP server a terminal is its card. networkd would send the machine's id, which is that of
+ * another terminal on a copied disk, and a new one wherever the data partition is created anew. */
 static void write_network(struct writing *writing, const char *file, const char *type, int metric,
 			  bool is_static)
 {
@@ -266,9 +268,11 @@ static void write_network(struct writing *writing, const char *file, const char 
 	if (!is_static) {
 		put_uses(writing, "DHCPv4", true);
 		buffer_print(&writing->text,
-			     "RouteMetric=%d\nUseHostname=no\nSendHostname=yes\nHostname=%s\n",
+			     "ClientIdentifier=mac\nRouteMetric=%d\nUseHostname=no\n"
+			     "SendHostname=yes\nHostname=%s\n",
 			     metric, host);
 		put_uses(writing, "DHCPv6", true);
+		buffer_print(&writing->text, "DUIDType=link-layer\n");
 		put_uses(writing, "IPv6AcceptRA", false);
 		buffer_print(&writing->text, "RouteMetric=%d\n", metric);
 	}

@@ -107,6 +107,17 @@ static void an_address_of_its_own_has_its_gateway_and_servers(void **state)
 	has_not("network/10-wired.network", "UseNTP");
 }
 
+/* The machine's id is that of another terminal where a disk was copied. */
+static void a_dhcp_server_knows_a_terminal_by_its_card(void **state)
+{
+	(void)state;
+	apply(RELEASE "[wifi]\nssid = Museum\ncountry = KH\n");
+	has("network/10-wired.network", "[DHCPv4]\nClientIdentifier=mac\n");
+	has("network/10-wired.network", "[DHCPv6]\nDUIDType=link-layer\n");
+	has("network/20-wifi.network", "[DHCPv4]\nClientIdentifier=mac\n");
+	has("network/20-wifi.network", "[DHCPv6]\nDUIDType=link-layer\n");
+}
+
 static void the_fetcher_is_told_what_is_its(void **state)
 {
 	char options[256];
@@ -426,7 +437,8 @@ static const char *value_of(const char *line, size_t file)
 	/* How a wired or radio network asks; nothing of gopura.conf but the host's name. */
 	if (!value && strncmp(written[file].name, "network/", 8) == 0 && strchr(line, '='))
 		for (const char *known = "UseDNS=UseNTP=UseHostname=SendHostname=Hostname="
-					 "RouteMetric=Metric=MulticastDNS=";
+					 "RouteMetric=Metric=MulticastDNS="
+					 "ClientIdentifier=DUIDType=";
 		     *known; known = strchr(known, '=') + 1)
 			if (strncmp(line, known, (size_t)(strchr(known, '=') - known) + 1) == 0)
 				value = strchr(line, '=') + 1;
@@ -602,6 +614,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(without_a_word_the_cable_is_asked),
 		cmocka_unit_test(an_address_of_its_own_has_its_gateway_and_servers),
+		cmocka_unit_test(a_dhcp_server_knows_a_terminal_by_its_card),
 		cmocka_unit_test(the_fetcher_is_told_what_is_its),
 		cmocka_unit_test(a_radio_network_is_named_as_iwd_looks_for_it),
 		cmocka_unit_test(the_radio_has_the_address_and_old_networks_go),
