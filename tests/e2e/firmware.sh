@@ -130,6 +130,15 @@ nothing_asked "a bundle of before there were sequences was installed"
 said 'v7 (sequence 0)' || fail "said: $(cat "$work/said")"
 plugged "v120 120" "twin 120"
 nothing_asked "what has the sequence of what runs was installed"
+# Of several the newest, whatever they are called; while it is on trial, an older one that is not below the floor waits.
+plugged "a-1.10=v120.122 122" "b-1.11=v120.124 124" "c-1.9=v120.121 121"
+[ "$(grep install "$work/asked")" = "install $stick/b-1.11.raucb" ] || fail "not the newest: $(cat "$work/asked")"
+runs A v120.124 124
+rm -f "$state/good-A"
+plugged "a-1.10=v120.122 122" "b-1.11=v120.124 124" "c-1.9=v120.121 121"
+nothing_asked "an older system took the place of a system on trial"
+said 'v120.122 (sequence 122) is not newer than the running system, v120.124 (124)' || fail "said: $(cat "$work/said")"
+runs B v120 120
 plugged "v120.125 125"
 asked "install $stick/bundle1.raucb" && asked "mark-active other" || fail "a rebuild of what runs is not installed: $(cat "$work/said")"
 plugged "v999 99999999999999999999999"
