@@ -61,6 +61,7 @@ done
 [ ! -s "$work/mounts" ] || fail "mounted: $(cat "$work/mounts")"
 rule=$(grep gopura-stick@ image/root/etc/udev/rules.d/90-gopura.rules)
 case $rule in *'ENV{ID_FS_TYPE}=="vfat|exfat"'*) ;; *) fail "udev's rule takes other file systems: $rule" ;; esac
+case $rule in *'ENV{ID_PART_ENTRY_TYPE}!="c12a7328-f81f-11d2-ba4b-00a0c93ec93b|0xef"'*) ;; *) fail "a Mac's hidden partition is taken for the stick: $rule" ;; esac
 
 # ---- one stick, by its kind and with every restriction
 hold sda
