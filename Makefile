@@ -195,8 +195,10 @@ po: deps ## bring the texts for translators (ui/po) up to date with the sources
 format: $(BUILD)/.test-deps ## format the sources with clang-format
 	@git ls-files -co --exclude-standard '*.c' '*.h' '*.cpp' | xargs clang-format -i
 
-clean: ## remove build/ (the demo content and its caches too)
-	rm -rf $(BUILD)
+# The keys of images stay: no terminal that was made with them takes an update of others (docs/install.md).
+clean: ## remove build/ (the demo content and its caches too), but not the keys of images
+	[ ! -d $(BUILD) ] || find $(BUILD)/ -mindepth 1 -maxdepth 1 ! -name image-keys -exec rm -rf {} +
+	@[ ! -e $(BUILD)/image-keys ] || echo "$(BUILD)/image-keys stays: without it nobody can update its terminals"
 
 # ---- build rules
 
