@@ -108,6 +108,11 @@ plugged "v90 90"
 nothing_asked "an older system was installed before the first was found good"
 found_good
 [ "$(cat "$state/floor")" = "100 v100" ] || fail "the floor is $(cat "$state/floor")"
+# What is noted already is not written again: the power may be cut meanwhile.
+[ "$(cat "$state/good-A")" = v100 ] || fail "good is not noted"
+touch -d 2001-01-01 "$state/good-A"
+found_good
+[ "$(stat -c %Y "$state/good-A")" = "$(date -d 2001-01-01 +%s)" ] || fail "what was good is written at each start"
 
 # ---- newer: installed, made active, two starts, restart
 plugged "v120 120"
