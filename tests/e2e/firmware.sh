@@ -57,7 +57,8 @@ cat >"$work/bin/systemctl" <<END
 #!/bin/sh
 case \$1 in
 show) echo 0 ;;
-is-active) ;;
+is-active) [ "\$3" != gopura-good.service ] || [ ! -e "$work/on-trial" ] ;;
+is-failed) exit 1 ;;
 *) echo "\$@" >>"$work/asked" ;;
 esac
 END
@@ -71,7 +72,8 @@ esac
 exec sh "$root/grub-editenv" "\$@"
 END
 printf '#!/bin/sh\n' >"$work/bin/mount"
-printf '#!/bin/sh\n' >"$work/bin/sleep"
+# Meanwhile a system on trial is found good.
+printf '#!/bin/sh\n[ ! -e "%s" ] || { rm "%s"; echo waited >>"%s"; }\n' "$work/on-trial" "$work/on-trial" "$work/asked" >"$work/bin/sleep"
 printf '#!/bin/sh\n' >"$work/bin/gopura-kiosk"
 chmod +x "$work"/bin/*
 
@@ -151,6 +153,13 @@ nothing_asked "a sequence that no shell can count was taken"
 plugged "forged 130"
 nothing_asked "a bundle with a wrong signature was installed"
 said 'bundle1.raucb is refused: signature verification failed' || fail "said: $(cat "$work/said")"
+
+# ---- while a system is on trial, the one that it could go back to is not overwritten
+rm -f "$state/good-B"
+: >"$work/on-trial"
+plugged "v120.126 126"
+[ "$(head -n 2 "$work/asked" | xargs)" = "waited install $stick/bundle1.raucb" ] || fail "the last good slot: $(cat "$work/asked")"
+found_good
 
 # ---- a stick that shows a newer manifest at the first reading, and an older system at the second
 plugged "v130 130 v110 110"
