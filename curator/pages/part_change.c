@@ -40,8 +40,8 @@ static void put_value(struct buffer *out, const cJSON *value)
 	}
 }
 
-/* Returns what a text becomes, owned; several lines, and the names of documents, are a list. NULL:
- * no memory. */
+/* Returns what a text of no language becomes, owned; several lines, and the names of documents, are
+ * a list. NULL: no memory. */
 static cJSON *make_value(const char *key, const char *text)
 {
 	cJSON *list, *item;
@@ -108,13 +108,17 @@ static void read_place(const struct place *place, struct buffer *out)
 	put_value(out, value);
 }
 
-static int set(cJSON *object, const char *key, const char *text)
+/* A text in a language is one text, with its lines: a list would be none to whoever reads it. */
+static int set(cJSON *object, const char *key, const char *text, bool has_language)
 {
+	cJSON *value;
+
 	if (!*text) {
 		cJSON_DeleteItemFromObjectCaseSensitive(object, key);
 		return 0;
 	}
-	return json_set(object, key, make_value(key, text)) ? 0 : -ENOMEM;
+	value = has_language ? cJSON_CreateString(text) : make_value(key, text);
+	return json_set(object, key, value) ? 0 : -ENOMEM;
 }
 
 static int write_place(cJSON *part, struct place *place, const char *text)
@@ -127,14 +131,14 @@ static int write_place(cJSON *part, struct place *place, const char *text)
 			return -ENOMEM;
 	}
 	if (!place->language[0])
-		return set(place->holder, place->key, text);
+		return set(place->holder, place->key, text, false);
 	texts = cJSON_GetObjectItemCaseSensitive(place->holder, place->key);
 	if (!cJSON_IsObject(texts)) {
 		texts = cJSON_CreateObject();
 		if (!json_set(place->holder, place->key, texts))
 			return -ENOMEM;
 	}
-	return set(texts, place->language, text);
+	return set(texts, place->language, text, true);
 }
 
 /* Objects that a change has left empty go with it. */

@@ -109,7 +109,7 @@ async function open(id, code = language, again = false) {
   byId("nothing").hidden = true;
   byId("work").hidden = false;
   for (const name of FIELDS) {
-    loaded[name] = part[name]?.[language] || "";
+    loaded[name] = [part[name]?.[language] || ""].flat().join("\n"); // earlier programs made a list of lines
     byId(name).value = loaded[name];
   }
   for (const element of [byId("page"), ...FIELDS.map(byId)]) element.lang = language;

@@ -227,20 +227,43 @@ static int read_region(struct part_reader *r)
 	return rc;
 }
 
+static void warn_of_no_text(const struct part_reader *r, const char *key, const char *language)
+{
+	diagnostics_add(r->draft->diagnostics, 0, parts_file, r->part->line,
+			"part \"%s\": its %s is left out, because it is no text by language: write "
+			"\"%s\": {\"%s\": \"...\"}",
+			part_name(r), key, key, language);
+}
+
+/* A card is one paragraph: further ones would be drawn below its edge. NULL: no memory. */
+static char *copy_paragraph(const char *text)
+{
+	char *copy = strdup(text);
+
+	for (char *at = copy; at && *at; at++)
+		if (*at == '\n' || *at == '\r')
+			*at = ' ';
+	return copy;
+}
+
 /* Reads {"en": "...", "fr": "..."} into texts indexed by the release's languages. */
 static int read_texts(struct part_reader *r, const char *key, char *texts[], bool needed)
 {
 	const struct info_build_options *options = r->draft->options;
 	const cJSON *object = cJSON_GetObjectItemCaseSensitive(r->json, key);
 
+	if (object && !cJSON_IsObject(object))
+		warn_of_no_text(r, key, options->languages[0]);
 	for (uint32_t i = 0; i < options->language_count; i++) {
 		const char *language = options->languages[i];
-		const char *text =
-			cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, language));
+		const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, language);
+		const char *text = cJSON_GetStringValue(value);
 
+		if (value && !text)
+			warn_of_no_text(r, key, language);
 		if (text && strspn(text, " \t\r\n") == strlen(text))
 			text = NULL;
-		if (text && !(texts[i] = strdup(text)))
+		if (text && !(texts[i] = copy_paragraph(text)))
 			return -ENOMEM;
 		if (!text && needed)
 			diagnostics_add(r->draft->diagnostics, i == 0 ? -EINVAL : 0, parts_file,

@@ -59,6 +59,22 @@ async function changesCaption(browser) {
   assert.match(await browser.evaluate(`document.querySelector("#history li").textContent`), /^ana/);
 }
 
+// A caption of two lines is one text, and stays one.
+async function writesLines(browser) {
+  const caption = () => browser.evaluate(`fetch("/api/information").then(answer => answer.json()).then(all => all.parts.find(one => one.id === "lions").caption.en)`);
+  await open(browser, "lions.en");
+  const before = await caption();
+  for (const text of ["One line.\nAnother one.", before]) {
+    await browser.evaluate(`(() => { const field = document.querySelector("#caption"); field.value = ${JSON.stringify(text)}; field.dispatchEvent(new Event("input")); })()`);
+    await browser.click("#save");
+    await saved(browser);
+    assert.equal(await caption(), text);
+    await open(browser, "lions.en");
+    assert.equal(await browser.evaluate(`document.querySelector("#caption").value`), text);
+    assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true, "nothing was changed");
+  }
+}
+
 // A recording is chosen as with the file dialog; the caption goes back to an older text by itself.
 async function speaksAndGoesBack(browser) {
   await browser.click("#tab-sound");
@@ -346,6 +362,7 @@ try {
   await signsInAgain(ana);
   await meetsARemoval(ana, petra);
   await meetsInAList(ana, petra);
+  await writesLines(ana);
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);

@@ -49,6 +49,21 @@ static void texts_are_set_and_removed_with_what_held_them(void **state)
 	cJSON_Delete(part);
 }
 
+/* A list would be no caption to the kiosk. One that was saved as a list is a text again. */
+static void a_caption_of_two_lines_is_one_text(void **state)
+{
+	cJSON *part = cJSON_Parse("{\"caption\": {\"fr\": [\"Une\", \"deux\"]}}");
+
+	(void)state;
+	CHECK(change(part, "caption", "en", "", "One\ntwo") == 0);
+	CHECK(change(part, "caption", "fr", "Une\ndeux", "Une\ntrois") == 0);
+	CHECK(change(part, "rights", "en", "", "A\nB") == 0);
+	CHECK(is(part, "{\"caption\": {\"en\": \"One\\ntwo\", \"fr\": \"Une\\ntrois\"}, "
+		       "\"credits\": {\"rights\": {\"en\": \"A\\nB\"}}}"));
+	CHECK(change(part, "caption", "en", "One\ntwo", "") == 0);
+	cJSON_Delete(part);
+}
+
 static void a_text_that_somebody_else_changed_is_not_overwritten(void **state)
 {
 	cJSON *part = cJSON_Parse("{\"title\": {\"en\": \"Theirs\"}}");
@@ -99,6 +114,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(texts_are_set_and_removed_with_what_held_them),
+		cmocka_unit_test(a_caption_of_two_lines_is_one_text),
 		cmocka_unit_test(a_text_that_somebody_else_changed_is_not_overwritten),
 		cmocka_unit_test(only_texts_of_a_part_can_be_changed),
 		cmocka_unit_test(parts_are_moved_and_removed),

@@ -178,6 +178,39 @@ static void names_the_line_of_a_bad_part(void **state)
 	}
 }
 
+static bool was_warned(unsigned line, const char *words)
+{
+	for (uint32_t i = 0; i < told.count; i++) {
+		const struct diagnostic *found = diagnostics_get(&told, i);
+
+		if (found->error == 0 && found->line == line && strstr(found->text, words))
+			return true;
+	}
+	return false;
+}
+
+/* A card has three lines, and what is no text is not on it. */
+static void a_caption_is_one_paragraph(void **state)
+{
+	static const char parts[] =
+		"{\"parts\": [\n{\"id\": \"a\", \"anchor\": [0,0,0], \"page\": false, \"title\": "
+		"{\"en\": \"x\"}, \"caption\": {\"en\": \"One\\ntwo\", \"km\": [\"One\", \"two\"]}},\n"
+		"{\"id\": \"b\", \"anchor\": [0,0,0], \"page\": false, \"title\": {\"en\": \"x\"}, "
+		"\"caption\": \"One\"}]}";
+	struct info_built built;
+	struct info *info;
+
+	(void)state;
+	write_text("parts.json", parts);
+	CHECK(build(&built) == 0);
+	CHECK(was_warned(2, "its caption is left out"));
+	CHECK(was_warned(3, "write \"caption\": {\"en\""));
+	CHECK(info_open(&info, buffer_bytes(&built.database)) == 0);
+	CHECK(strcmp(info_text(info, 0, "en").caption, "One two") == 0);
+	info_close(info);
+	info_built_finish(&built);
+}
+
 #define TEN "k0 k1=1 k2='2' k3=\"3\" k4 k5 k6 k7=<b k8 = x k9 "
 
 static void names_the_line_of_a_bad_page(void **state)
@@ -388,6 +421,7 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_folder_without_parts_gives_an_empty_database,
 						set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_part, set_up, tear_down),
+		cmocka_unit_test_setup_teardown(a_caption_is_one_paragraph, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(names_the_line_of_a_bad_page, set_up, tear_down),
 		cmocka_unit_test_setup_teardown(refuses_a_page_of_too_many_blocks, set_up,
 						tear_down),
