@@ -23,6 +23,7 @@ static int read_settings(struct site *site, const char *folder, struct diagnosti
 
 int site_open(struct site *site, const char *folder, struct diagnostics *diagnostics)
 {
+	const struct scans_shape *shape = NULL;
 	int rc;
 
 	*site = (struct site){ 0 };
@@ -39,6 +40,8 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 	if (rc == 0)
 		rc = scans_get_mesh(site->scans, &site->mesh, diagnostics);
 	if (rc == 0)
+		rc = scans_get_shape(site->scans, &shape, diagnostics);
+	if (rc == 0)
 		rc = face_blocks_make(&site->blocks, site->mesh);
 	if (rc == 0)
 		rc = documents_open(&site->documents, folder, diagnostics);
@@ -46,7 +49,8 @@ int site_open(struct site *site, const char *folder, struct diagnostics *diagnos
 		site_close(site);
 		return rc;
 	}
-	site->lit = content_is_lit(&site->content, site->mesh->texture_count > 0);
+	/* A closed surface has no pictures, but the colours that they had: as a release judges. */
+	site->lit = content_is_lit(&site->content, shape->had_pictures);
 	return 0;
 }
 
