@@ -29,6 +29,7 @@
 	FILE(script, "/curator.js", "curator.js", SCRIPT, true)                                    \
 	FILE(api, "/api.js", "api.js", SCRIPT, true)                                               \
 	FILE(account, "/account.js", "account.js", SCRIPT, true)                                   \
+	FILE(browser, "/browser.js", "browser.js", SCRIPT, true)                                   \
 	FILE(publish, "/publish.js", "publish.js", SCRIPT, true)                                   \
 	FILE(publish_style, "/publish.css", "publish.css", STYLE, true)                            \
 	FILE(information, "/information", "information.html", HTML, false)                         \

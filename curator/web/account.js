@@ -1,5 +1,6 @@
 // Who is signed in, at the top of the page, and signing out.
 import { signOut } from "./api.js";
+import { mayLose } from "./browser.js";
 
 const WORDS = { reader: "Reader", editor: "Editor", publisher: "Publisher" };
 
@@ -9,6 +10,7 @@ export function showAccount(session) {
   const button = document.getElementById("sign-out");
   button.hidden = session.sign_on; // the museum's own sign-on signs out
   button.addEventListener("click", async () => {
+    if (!mayLose("What is not saved is lost. Sign out all the same?")) return; // what is marked ends with the session
     try {
       await signOut();
     } finally {

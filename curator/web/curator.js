@@ -1,6 +1,7 @@
 // The page on which parts are marked: sends finished strokes. docs/curator.md has the messages.
 import { loadSession, may } from "./api.js";
 import { showAccount } from "./account.js";
+import { keyOf } from "./browser.js";
 import { Eye } from "./eye.js";
 import { setUpPart, takeEnd, takeError, takeHello, takeParts, takeRegion } from "./marked_part.js";
 import { Ruler } from "./measure.js";
@@ -284,7 +285,7 @@ const ZOOM_KEYS = { "+": 0.8, "=": 0.8, "-": 1.25 };
 const TURN_KEYS = { ArrowLeft: [-30, 0], ArrowRight: [30, 0], ArrowUp: [0, -30], ArrowDown: [0, 30] };
 document.addEventListener("keydown", event => {
   if (!eye.camera || event.target.matches("input, select") || document.querySelector("dialog[open]")) return;
-  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, control = event.ctrlKey || event.metaKey;
+  const key = keyOf(event), control = event.ctrlKey || event.metaKey;
   let done = true;
   if (pen && !control && document.activeElement === stage && penKey(key, event.shiftKey)) { event.preventDefault(); return; }
   if (control && key === "z") send({ type: event.shiftKey ? "redo" : "undo" });

@@ -1,4 +1,5 @@
 // The page of a part, edited as it looks: the toolbar, pasting, figures, and places where two people wrote at once.
+import { keyOf } from "./browser.js";
 import { clean, isKept, pictureAddress, textOf } from "./clean.js";
 
 const byId = id => document.getElementById(id);
@@ -222,7 +223,7 @@ export function setUpEditor(onChange, openLink, openFigure, takeFiles) {
   }
   page.addEventListener("keydown", event => {
     const control = event.ctrlKey || event.metaKey;
-    if (control && event.key.toLowerCase() === "k") { event.preventDefault(); openLink(); }
+    if (control && keyOf(event) === "k") { event.preventDefault(); openLink(); }
     if (event.target.tagName === "FIGURE" && (event.key === "Enter" || event.key === " ")) { event.preventDefault(); openFigure(event.target); }
     if (event.target.tagName === "FIGURE" && (event.key === "Delete" || event.key === "Backspace")) { event.preventDefault(); event.target.remove(); changed(); }
   });

@@ -3,6 +3,7 @@
 import { hasUnsavedCredit, showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
+import { guardLeaving, keyOf } from "./browser.js";
 import { pictureAddress } from "./clean.js";
 import { showDocuments } from "./documents.js";
 import { setUpDrops, takeDrop, takeFiles } from "./drops.js";
@@ -401,9 +402,9 @@ for (const name of FIELDS) byId(name).addEventListener("input", edited);
 byId("picture").addEventListener("click", () => pickPicture(null, true, picked => { if (picked) insertBlocks(makeFigure(picked)); }));
 byId("save").addEventListener("click", save);
 document.addEventListener("keydown", event => {
-  if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "s") { event.preventDefault(); save(); }
+  if ((event.ctrlKey || event.metaKey) && keyOf(event) === "s") { event.preventDefault(); save(); }
 });
-addEventListener("beforeunload", event => { if (dirty || saving || hasUnsavedCredit()) event.preventDefault(); });
+guardLeaving(() => dirty || saving || hasUnsavedCredit());
 const page = byId("page");
 page.addEventListener("dragover", event => { if (may("editor") && !event.dataTransfer.types.includes("text/x-part")) { event.preventDefault(); page.classList.add("dropping"); } });
 page.addEventListener("dragleave", () => page.classList.remove("dropping"));

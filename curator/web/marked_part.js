@@ -1,6 +1,7 @@
 // The part that is marked: its title, saving it, the list of all parts, and whether something is not saved. Which part is
 // open is what the program answers, as the region lives there; a click alone opens nothing.
 import { ask, may } from "./api.js";
+import { guardLeaving } from "./browser.js";
 
 const byId = id => document.getElementById(id);
 let send = () => {}, tell = () => {}, connected = false;
@@ -89,7 +90,7 @@ byId("fresh").addEventListener("click", () => {
 });
 byId("title").addEventListener("input", show);
 byId("language").addEventListener("change", () => { fill(); show(); });
-addEventListener("beforeunload", event => { if (isUnsaved()) event.preventDefault(); });
+guardLeaving(isUnsaved);
 
 // ---- answers
 

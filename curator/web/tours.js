@@ -2,6 +2,7 @@
 // curve that the terminal flies. docs/curator.md has the addresses.
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
+import { guardLeaving, keyOf } from "./browser.js";
 import { Eye } from "./eye.js";
 import { versionsOf } from "./history.js";
 import { showStops } from "./stop_list.js";
@@ -351,7 +352,7 @@ byId("stage").addEventListener("dblclick", event => {
 
 const TURN_KEYS = { ArrowLeft: [-30, 0], ArrowRight: [30, 0], ArrowUp: [0, -30], ArrowDown: [0, 30] }, ZOOM_KEYS = { "+": 0.8, "=": 0.8, "-": 1.25 };
 document.addEventListener("keydown", event => {
-  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, control = event.ctrlKey || event.metaKey;
+  const key = keyOf(event), control = event.ctrlKey || event.metaKey;
   if (control && key === "s") { event.preventDefault(); save(); return; }
   if (control || !eye.camera || event.target.matches("input, textarea, select")) return;
   const onStage = document.activeElement === byId("stage");
@@ -362,7 +363,7 @@ document.addEventListener("keydown", event => {
   else return;
   event.preventDefault();
 });
-addEventListener("beforeunload", event => { if (dirty) event.preventDefault(); });
+guardLeaving(() => dirty);
 
 loadSession().then(async session => {
   if (session.role === "nobody") { location.assign("/sign-in"); return; }

@@ -229,6 +229,10 @@ async function questions(petra) {
   assert.deepEqual(asks(), [leave, leave]);
   assert.equal(await count(petra), marked);
   assert.equal(await heading(petra), "Part: Door");
+  await petra.click("#sign-out");
+  assert.deepEqual(asks(), ["What is not saved is lost. Sign out all the same?"]);
+  await petra.sleep(500);
+  assert.equal(await text(petra, "#connection"), "Connected");
   petra.dialogs.accept = true;
   await petra.click("#save");
   await saved(petra);

@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { openBrowser } from "../tools/browser.mjs";
 
 const [port, folder] = process.argv.slice(2), home = `http://127.0.0.1:${port}`;
-const CONTROL = 2;
+const ALT = 1, CONTROL = 2;
 
 async function signIn(browser, name) {
   await browser.go(`${home}/sign-in`);
@@ -73,6 +73,23 @@ async function writesLines(browser) {
     assert.equal(await browser.evaluate(`document.querySelector("#caption").value`), text);
     assert.equal(await browser.evaluate(`document.querySelector("#save").disabled`), true, "nothing was changed");
   }
+}
+
+// On a keyboard of another script the keys are where they are on a Latin one. A browser that asks only for returnValue asks.
+async function savesByAnyKeyboard(browser) {
+  const asks = () => browser.evaluate(`(() => { const event = document.createEvent("BeforeUnloadEvent"); event.initEvent("beforeunload", false, true); window.dispatchEvent(event); return event.returnValue; })()`);
+  await open(browser, "naga.en");
+  assert.equal(await asks(), "");
+  await caret(browser, 0);
+  await browser.type(" ភាសាខ្មែរ");
+  assert.notEqual(await asks(), "");
+  const press = async (key, modifiers) => { for (const type of ["keyDown", "keyUp"]) await browser.send("Input.dispatchKeyEvent", { type, key, code: "KeyS", modifiers, windowsVirtualKeyCode: 83 }); };
+  await press("ś", CONTROL | ALT); // AltGr: a letter
+  await browser.sleep(500);
+  assert.match(await says(browser), /Not saved yet/);
+  await press("ស", CONTROL);
+  await saved(browser);
+  assert.match(await html(browser, "naga"), /ភាសាខ្មែរ/);
 }
 
 // A recording is chosen as with the file dialog; the caption goes back to an older text by itself.
@@ -363,6 +380,7 @@ try {
   await meetsARemoval(ana, petra);
   await meetsInAList(ana, petra);
   await writesLines(ana);
+  await savesByAnyKeyboard(ana);
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);
