@@ -2,6 +2,7 @@
 import { ask, may } from "./api.js";
 
 const panel = document.getElementById("history"); // of the page on which texts are written
+let newest = 0; // what was asked for last: a late answer is of something else
 
 const when = seconds => new Date(seconds * 1000).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
 const words = text => text.split(/(\s+|<[^>]*>)/).filter(Boolean);
@@ -155,11 +156,12 @@ async function cardHistory(part, language, set) {
 // Of a page, of the texts on the card, and of what parts.json has of all parts, which cannot go back: others' texts are in
 // it too. set(change) saves one text, as POST /api/parts/ID/texts takes it.
 export async function showHistory(part, language, document_, restored, set) {
+  const mine = ++newest;
   panel.textContent = "Loading …";
   try {
     const page = await versionsOf(document_, restored), card = await cardHistory(part, language, set), parts = await versionsOf("parts.json", null);
-    panel.replaceChildren(heading("This page"), page, heading("Title, caption, reading and picture"), card, heading("All parts"), parts);
+    if (mine === newest) panel.replaceChildren(heading("This page"), page, heading("Title, caption, reading and picture"), card, heading("All parts"), parts);
   } catch (failure) {
-    panel.textContent = failure.message;
+    if (mine === newest) panel.textContent = failure.message;
   }
 }

@@ -192,7 +192,7 @@ async function saveTexts() {
 
 async function savePage() {
   const text = pageText();
-  if (text === loadedText) return true;
+  if (!isLoaded || text === loadedText) return true; // until it is here, the editor has that of the one before
   const condition = tag ? { "If-Match": `"${tag}"` } : { "If-None-Match": "*" };
   try {
     const answer = text ? await ask("PUT", pageAddress(), { html: text }, condition) : await ask("DELETE", pageAddress(), undefined, condition);
@@ -267,10 +267,10 @@ function save() {
 
 // ---- the panels at the right
 
-async function restore(version) {
-  if (!await mayLeave()) return;
+async function restore(name, version) {
+  if (name !== pageName() || !await mayLeave()) return; // another one was opened, its history is on its way
   try {
-    await ask("POST", "/api/restore", { document: pageName(), version, tag });
+    await ask("POST", "/api/restore", { document: name, version, tag });
     setDirty(false);
     await loadInformation();
     await open(part.id, language, true);
@@ -339,7 +339,8 @@ function showPanel() {
     byId(tab.getAttribute("aria-controls")).hidden = !on;
   }
   if (!part) return;
-  if (panel === "history") showHistory(part, language, pageName(), restore, sendField);
+  const name = pageName();
+  if (panel === "history") showHistory(part, language, name, version => restore(name, version), sendField);
   if (panel === "documents") showDocuments({ part, parts: information.parts, documents: information.documents, titleOf: one => titleOf(one, information.languages),
     shown: pageId(), language, edit: editDocument, set: setDocuments, done: changeFiles });
   if (panel === "sound") showSound(part, language, changeFiles);

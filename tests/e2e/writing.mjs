@@ -92,6 +92,34 @@ async function savesByAnyKeyboard(browser) {
   assert.match(await html(browser, "naga"), /ភាសាខ្មែរ/);
 }
 
+// While the next page is on its way, what was left is not sent to its address; and its history stays its own.
+async function waitsForThePage(browser) {
+  const before = await html(browser, "stairs");
+  await open(browser, "lions.en");
+  await caret(browser, 0);
+  await browser.type(" Left.");
+  await browser.evaluate(`(() => { window.line ??= fetch; window.sent = []; window.fetch = async (path, options) => { if (options?.method === "PUT") window.sent.push(path); if (path.startsWith("/api/pages")) await new Promise(done => setTimeout(done, 1000)); return line(path, options); }; })()`);
+  browser.dialogs.accept = true;
+  await browser.click("#part-stairs");
+  await browser.until(`document.querySelector("#part-stairs").getAttribute("aria-current") === "true"`, "the other part");
+  await browser.key("s", CONTROL, 83);
+  await browser.until(`location.hash === "#stairs.en"`, "its page");
+  await browser.sleep(300);
+  assert.deepEqual(await browser.evaluate(`window.sent`), []);
+  assert.equal(await html(browser, "stairs"), before);
+  await release(browser);
+  await browser.click("#tab-history");
+  await browser.until(`document.querySelector("#history .versions")`, "its history");
+  await hold(browser, "GET", "lions.en.html", 1500);
+  await browser.click("#part-lions");
+  await browser.until(`location.hash === "#lions.en"`, "another part");
+  await browser.click("#part-stairs");
+  await browser.until(`location.hash === "#stairs.en" && document.querySelector("#history .versions")`, "the first one again");
+  await browser.sleep(2500);
+  assert.doesNotMatch(await browser.evaluate(`document.querySelector("#history .versions").textContent`), /lions in en/);
+  await release(browser);
+}
+
 // A recording is chosen as with the file dialog; the caption goes back to an older text by itself.
 async function speaksAndGoesBack(browser) {
   await browser.click("#tab-sound");
@@ -381,6 +409,7 @@ try {
   await meetsInAList(ana, petra);
   await writesLines(ana);
   await savesByAnyKeyboard(ana);
+  await waitsForThePage(ana);
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);
