@@ -3,6 +3,7 @@
 
 #include <cjson/cJSON.h>
 #include <errno.h>
+#include <glib.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,19 @@ static cJSON *page_json(struct bytes html, const char *tag)
 	return json;
 }
 
+/* A browser would show something else in the place of other bytes, and save that. The tag is for
+ * going back to an older version. */
+static void refuse_bytes(struct api_response *response, const char *name, const char *tag)
+{
+	cJSON *json = page_json((struct bytes){ 0 }, tag);
+	char message[DIAGNOSTIC_BYTES];
+
+	snprintf(message, sizeof(message), "%s is not UTF-8: save the file as UTF-8.", name);
+	cJSON_AddStringToObject(json, "message", message);
+	response->status = 422;
+	api_send_json(response, json);
+}
+
 /* A page that is not there is one without text. */
 static void get_page(void *user, const struct api_request *request, struct api_response *response)
 {
@@ -60,6 +74,9 @@ static void get_page(void *user, const struct api_request *request, struct api_r
 	rc = documents_read(site->documents, name, &html, tag, &diagnostics);
 	if (rc < 0 && rc != -ENOENT)
 		api_fail_with(response, rc, &diagnostics);
+	else if (html.size > 0 &&
+		 !g_utf8_validate((const char *)html.data, (gssize)html.size, NULL))
+		refuse_bytes(response, name, tag);
 	else
 		api_send_json(response, page_json(buffer_bytes(&html), tag));
 	buffer_finish(&html);
@@ -89,6 +106,11 @@ static int meet_others(struct page_save *save, struct bytes theirs, const char *
 
 	if (strcmp(save->base, now) == 0)
 		return 0;
+	if (*now && save->html.data && bytes_equal(save->html, theirs)) {
+		/* Somebody has written the same, or it is saved and the answer was lost. */
+		memcpy(save->base, now, sizeof(save->base));
+		return 0;
+	}
 	if (!*now || !save->html.data) {
 		answer_conflict(save, theirs, now,
 				*now ? "somebody else has changed this page meanwhile: look at it, "

@@ -157,6 +157,7 @@ async function loadPage() {
     page = await ask("GET", pageAddress());
   } catch (failure) {
     why = failure.message;
+    page.tag = failure.answer?.tag || ""; // to go back from
   }
   if (mine !== loads) return false;
   const isWhole = setPage(page.html || "<p><br></p>");

@@ -1,7 +1,7 @@
 """Curators write over HTTP: texts, pages, pictures, and what becomes of them when two do so at once, or the program is
 killed.
 
-    tests/e2e/pages.py PORT check          # as curators
+    tests/e2e/pages.py PORT check CONTENT  # as curators; changes a file of the folder, too
     tests/e2e/pages.py PORT save COUNTER   # saves one page again and again, and notes what was acknowledged in a file
 
 The content is that of the small temple, with the accounts rolf, ana and petra. Standard library only."""
@@ -100,7 +100,26 @@ def check_pages(ana, petra):
     assert status == 409 and "No end, by Ana" in answer["html"] and "The end, by both" in answer["html"]
     assert "<<<<<<< mine" in answer["html"]
     decided = page(ana)[0].replace("No end, by Ana", "The arrived end, by both")
-    assert save(petra, PAGE, decided, answer["tag"])[0] == 200
+    status, _, saved = save(petra, PAGE, decided, answer["tag"])
+    assert status == 200
+    # The answer was lost, and it is sent again.
+    status, _, again = save(petra, PAGE, decided, answer["tag"])
+    assert status == 200 and again["tag"] == saved["tag"] and not again["merged"]
+
+
+def check_bytes(ana, content):
+    """A page that is not UTF-8 is not shown as something else, which would then be saved."""
+    with open(f"{content}/pages/lions.ja.html", "rb") as file:
+        before = file.read()
+    for wrong in ("<p>Été</p>".encode("latin-1"), "<p>x</p>".encode("utf-16")):
+        with open(f"{content}/pages/lions.ja.html", "wb") as file:
+            file.write(wrong)
+        status, _, answer = ana.ask("GET", "/api/pages/lions.ja")
+        assert status == 422 and "pages/lions.ja.html is not UTF-8" in answer["message"] and answer["html"] == ""
+        version = ana.ask("GET", "/api/versions?document=pages/lions.ja.html")[2]["versions"][1]["version"]
+        assert post(ana, "/api/restore", document="pages/lions.ja.html", version=version, tag=answer["tag"])[0] == 200
+        with open(f"{content}/pages/lions.ja.html", "rb") as file:
+            assert file.read() == before
 
 
 def check_tours(ana, petra):
@@ -263,6 +282,7 @@ def main():
     check_texts(ana, petra)
     check_order(ana)
     check_pages(ana, petra)
+    check_bytes(ana, sys.argv[3])
     check_tours(ana, petra)
     check_history(ana)
     check_pictures(ana)

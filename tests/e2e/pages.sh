@@ -29,7 +29,7 @@ start() {
 start
 ! build/gopura-curator "$content" --port 0 2>"$work/log" || fail "two have one folder"
 grep -q 'another gopura-curator' "$work/log" || fail "of two: $(cat "$work/log")"
-python3 tests/e2e/pages.py "$port" check || { tail "$work/curator.log"; fail "writing"; }
+python3 tests/e2e/pages.py "$port" check "$content" || { tail "$work/curator.log"; fail "writing"; }
 
 # ---- killed while it saves
 for _ in 1 2 3 4; do
