@@ -69,6 +69,7 @@ const player = new Player(eye, n => tour.stops[n]?.caption?.[language] || "");
 async function askFlight() {
   const mine = ++asked, of = tour;
   let flight;
+  if (!tour) return; // it was removed meanwhile
   try {
     flight = await ask("POST", `/api/tours/${tour.id}/flight`, { tours });
   } catch (failure) {
@@ -142,7 +143,7 @@ function move(from, to) {
 
 function show() {
   const is = Boolean(tour);
-  byId("work").hidden = !is;
+  byId("tour").hidden = byId("languages").hidden = !is;
   byId("nothing").hidden = is;
   byId("keep").disabled = !is || tour.scene || !eye.camera || !may("editor") || tour.stops.length >= STOPS_MAX;
   showTours();

@@ -348,6 +348,34 @@ async function loses(browser, name) {
   await browser.send("Page.removeScriptToEvaluateOnNewDocument", { identifier });
 }
 
+// The last tour is removed as any other one, and the history leads back to it.
+async function removesAll(browser) {
+  const before = await tours(browser);
+  await open(browser, "round");
+  await answers(browser, true);
+  for (let n = before.length; n > 0; n--) await browser.click("#remove");
+  await browser.until(`document.querySelector("#nothing").checkVisibility()`, "no tour");
+  await browser.click("#save");
+  await browser.until(`document.querySelector("#message").checkVisibility() && /no tour has that id/i.test(document.querySelector("#problems").textContent)`, "that a page leads to one");
+  await browser.evaluate(`import("/api.js").then(async ({ ask }) => {
+    for (const language of (await ask("GET", "/api/information")).languages) {
+      const { html, tag } = await ask("GET", "/api/pages/central-tower." + language);
+      await ask("PUT", "/api/pages/central-tower." + language, { html: html.replace(/<a href="tour:[^>]*>([^<]*)<[/]a>/, "$1") }, { "If-Match": '"' + tag + '"' });
+    }
+  })`);
+  await browser.click("#save");
+  await saved(browser);
+  assert.deepEqual(await tours(browser), []);
+  await browser.picture(`${folder}/none.png`);
+  await browser.click("#history-box summary");
+  await browser.until(`document.querySelectorAll("#versions li").length > 1`, "the versions");
+  await browser.click("#versions li:nth-child(2) button");
+  await browser.until(`document.querySelector("#versions li:nth-child(2) .difference button")`, "going back");
+  await browser.evaluate(`document.querySelector("#versions li:nth-child(2) .difference button").click()`);
+  await browser.until(`document.querySelectorAll("#tour-list button").length === ${before.length}`, "the tours");
+  assert.deepEqual(await tours(browser), before);
+}
+
 // A reader may look and play, and change nothing.
 async function reads(browser) {
   await signIn(browser, "rolf");
@@ -386,6 +414,7 @@ try {
   await loses(ana, "ana");
   await open(ana, "round");
   await begins(ana);
+  await removesAll(ana);
   await reads(petra);
   // The browser remarks on answers that the test provokes: 409 and 412 of the overlap, 422 of one stop, 401 of who is
   // signed out, 403 of a reader.
