@@ -234,9 +234,10 @@ export function setUpEditor(onChange, openLink, openFigure, takeFiles) {
   });
   page.addEventListener("paste", event => {
     event.preventDefault();
-    const data = event.clipboardData;
-    if (data.files.length && !data.getData("text/html")) { takeFiles([...data.files]); return; }
-    const blocks = clean(data.getData("text/html") || data.getData("text/plain").split(/\n{2,}/).map(text => `<p>${text.replace(/[&<]/g, c => c === "&" ? "&amp;" : "&lt;")}</p>`).join(""));
+    const data = event.clipboardData, html = data.getData("text/html");
+    const blocks = clean(html || data.getData("text/plain").split(/\n\s*\n/).map(text => `<p>${text.replace(/[&<]/g, c => c === "&" ? "&amp;" : "&lt;")}</p>`).join(""));
+    // A picture alone, from a browser or a program for texts, comes with an address that means nothing here.
+    if (data.files.length && (!html || (!blocks.textContent.trim() && !blocks.querySelector("img")))) { takeFiles([...data.files]); return; }
     const isLine = blocks.children.length === 1 && blocks.firstElementChild.tagName === "P";
     document.execCommand("insertHTML", false, isLine ? blocks.firstElementChild.innerHTML : named(blocks).innerHTML);
   });

@@ -120,6 +120,27 @@ async function waitsForThePage(browser) {
   await release(browser);
 }
 
+// A picture that is copied elsewhere comes with the address of where it was.
+async function pastesAPicture(browser) {
+  await open(browser, "naga.en");
+  const figures = () => browser.evaluate(`document.querySelectorAll("#page figure").length`), before = await figures();
+  await caret(browser, 0);
+  await browser.evaluate(`(async () => {
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = 8;
+    const data = new DataTransfer(), blob = await new Promise(done => canvas.toBlob(done));
+    data.setData("text/html", "<meta charset='utf-8'><img src='https://x.example/y.png'>");
+    data.items.add(new File([blob], "copied.png", { type: "image/png" }));
+    document.querySelector("#page").dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true }));
+  })()`);
+  await browser.until(`document.querySelectorAll("#page figure").length === ${before + 1}`, "the picture");
+  await browser.evaluate(`(() => { const data = new DataTransfer(); data.setData("text/plain", "From Windows.\\r\\n\\r\\nTwo."); document.querySelector("#page").dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true, cancelable: true })); })()`);
+  assert.match(await shown(browser), /From Windows\./);
+  assert.doesNotMatch(await shown(browser), /From Windows\. Two/);
+  await browser.click("#save");
+  await saved(browser);
+}
+
 // A recording is chosen as with the file dialog; the caption goes back to an older text by itself.
 async function speaksAndGoesBack(browser) {
   await browser.click("#tab-sound");
@@ -410,6 +431,7 @@ try {
   await writesLines(ana);
   await savesByAnyKeyboard(ana);
   await waitsForThePage(ana);
+  await pastesAPicture(ana);
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);
