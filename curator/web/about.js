@@ -21,14 +21,22 @@ function field(part, common, language, [element, label, help], set) {
   area.defaultValue = old;
   area.readOnly = !may("editor");
   area.placeholder = !value && all ? textOf(typeof all === "object" && !Array.isArray(all) ? all[language] || Object.values(all)[0] : all) : "";
-  area.addEventListener("change", () => set({ field: element, language: byLanguage ? language : "", from: old, to: area.value.trim() }));
+  area.addEventListener("change", async () => {
+    const to = area.value.trim();
+    if (await set({ field: element, language: byLanguage ? language : "", from: old, to })) area.defaultValue = to; // it may stay, behind another panel
+  });
   wrap.append(" ", small, area);
   return wrap;
 }
 
 const areas = () => [...panel.querySelectorAll("textarea")];
 
-export const hasUnsavedCredit = () => areas().some(area => area.value !== area.defaultValue);
+export const hasUnsavedCredit = () => areas().some(area => area.value.trim() !== area.defaultValue.trim());
+
+// What is typed is not wanted any more.
+export function dropCredits() {
+  for (const area of areas()) area.value = area.defaultValue;
+}
 
 // What is typed while another field is saved stays, and the caret in it.
 function keepTyped(of, redraw) {
@@ -42,7 +50,7 @@ function keepTyped(of, redraw) {
   areas()[at].setSelectionRange(selectionStart, selectionEnd);
 }
 
-// set(change) saves one, as POST /api/parts/ID/texts takes it.
+// set(change) saves one, as POST /api/parts/ID/texts takes it, and returns whether it did.
 export function showAbout(part, common, language, set, remove) {
   const figure = document.createElement("figure"), words = document.createElement("figcaption"), pick = document.createElement("button"), gone = document.createElement("button");
   if (part.thumbnail) {

@@ -1,6 +1,6 @@
 // The page on which curators write: parts at the left, a part's texts and its page in the middle, preview, history and
 // credits at the right. docs/curator.md has the addresses.
-import { hasUnsavedCredit, showAbout } from "./about.js";
+import { dropCredits, hasUnsavedCredit, showAbout } from "./about.js";
 import { showAccount } from "./account.js";
 import { ask, loadSession, may } from "./api.js";
 import { guardLeaving, keyOf } from "./browser.js";
@@ -49,7 +49,11 @@ function tellSaved(words) {
 // Before what is open gives way to something else.
 async function mayLeave() {
   await saving;
-  return !dirty || confirm("What you wrote is not saved. Leave it?");
+  await sending;
+  if (!dirty && !hasUnsavedCredit()) return true;
+  if (!confirm("What you wrote is not saved. Leave it?")) return false;
+  dropCredits();
+  return true;
 }
 
 const problemsHere = () => information.problems.filter(problem => part && problem.part === part.id && (!problem.language || problem.language === language));
@@ -284,11 +288,14 @@ async function restore(name, version) {
   }
 }
 
+// Returns whether it is saved.
 async function setField(change) {
   const isHere = change.language === language && FIELDS.includes(change.field), field = isHere ? byId(change.field) : null;
-  if (isHere && field.value.trim() !== loaded[change.field] && !confirm(`What you wrote as ${change.field} is not saved. Leave it?`)) return;
+  let isSaved = false;
+  if (isHere && field.value.trim() !== loaded[change.field] && !confirm(`What you wrote as ${change.field} is not saved. Leave it?`)) return false;
   try {
     await ask("POST", `/api/parts/${part.id}/texts`, { changes: [change] });
+    isSaved = true;
     await loadInformation();
     if (isHere) loaded[change.field] = field.value = change.to;
     edited();
@@ -298,6 +305,7 @@ async function setField(change) {
     await loadInformation().catch(() => {});
   }
   showPanel();
+  return isSaved;
 }
 
 const sendField = change => (sending = setField(change).finally(() => { sending = null; }));

@@ -406,6 +406,28 @@ async function writesCredits(browser) {
   await browser.key("s", CONTROL, 83);
   await browser.until(`fetch("/api/information").then(answer => answer.json()).then(all => all.parts.find(one => one.id === "lions").credits?.publisher === "The museum")`, "the second credit");
   await release(browser);
+  // One that cannot be saved does not go unasked; one that is saved behind another panel is no question.
+  await hold(browser, "POST", "/texts", 0, true);
+  await browser.evaluate(`${area(3)}.focus()`);
+  await browser.type("1998");
+  await browser.evaluate(`${area(4)}.focus()`);
+  await browser.until(`/Not saved/.test(document.querySelector("#message").textContent)`, "why not");
+  await release(browser);
+  browser.dialogs.length = 0;
+  browser.dialogs.accept = false;
+  await browser.click("#part-naga");
+  await asked(browser, 1);
+  assert.equal(await browser.evaluate(`${area(3)}.value`), "1998");
+  browser.dialogs.accept = true;
+  await browser.click("#part-naga");
+  await browser.until(`location.hash === "#naga.en"`, "another part");
+  await browser.evaluate(`${area(3)}.focus()`);
+  await browser.type("1999");
+  await browser.click("#tab-history");
+  await browser.until(`fetch("/api/information").then(answer => answer.json()).then(all => all.parts.find(one => one.id === "naga").credits?.date === "1999")`, "the credit");
+  await browser.click("#part-lions");
+  await browser.until(`location.hash === "#lions.en"`, "no question");
+  assert.equal(browser.dialogs.length, 2);
 }
 
 async function previews(browser) {
