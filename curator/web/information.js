@@ -76,7 +76,7 @@ async function loadInformation() {
 }
 
 function showLanguages() {
-  const names = new Intl.DisplayNames([], { type: "language" });
+  const names = new Intl.DisplayNames([], { type: "language" }), isHere = byId("languages").contains(document.activeElement);
   byId("languages").replaceChildren(...information.languages.map(code => {
     const button = document.createElement("button"), dot = document.createElement("i");
     const has = [part.title?.[code], part.caption?.[code], part.without_page || part.pages[code]].filter(Boolean).length;
@@ -91,6 +91,7 @@ function showLanguages() {
     button.addEventListener("click", () => open(part.id, code));
     return button;
   }));
+  if (isHere) byId("languages").querySelector("[aria-selected=true]").focus();
 }
 
 function arrowTabs(list) {

@@ -430,6 +430,15 @@ async function writesCredits(browser) {
   assert.equal(browser.dialogs.length, 2);
 }
 
+// With the keyboard alone: the next language, and the focus stays on it.
+async function changesTheLanguage(browser) {
+  await open(browser, "lions.en");
+  await browser.evaluate(`document.querySelector("#languages [aria-selected=true]").focus()`);
+  await browser.key("ArrowRight", 0, 39);
+  await browser.until(`/^#lions\.(?!en)/.test(location.hash)`, "the next language");
+  assert.equal(await browser.evaluate(`document.activeElement.getAttribute("aria-selected")`), "true");
+}
+
 async function previews(browser) {
   await browser.click("#tab-preview");
   await browser.until(`[...document.querySelectorAll("#preview img")].filter(image => image.complete && image.naturalWidth === 1280).length === 3`, "three previews", 60000);
@@ -457,6 +466,7 @@ try {
   await losesTheLine(ana);
   await leavesWhatItCannotShow(ana);
   await writesCredits(ana);
+  await changesTheLanguage(ana);
   await takesADrop(ana);
   await previews(ana);
   await ana.picture(`${folder}/writing.png`);
