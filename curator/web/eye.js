@@ -39,8 +39,8 @@ export class Eye {
   show(data) {
     const head = new DataView(data), of = head.getUint32(0, true), sharp = (head.getUint32(4, true) & 1) !== 0;
     const blob = new Blob([new Uint8Array(data, 8)], { type: "image/jpeg" }), [picture] = this.canvases;
-    this.decoding = this.decoding.then(() => createImageBitmap(blob)).then(bitmap => {
-      this.send({ type: "got" });
+    // One that cannot be decoded has come too: the next ones would wait for it.
+    this.decoding = this.decoding.then(() => createImageBitmap(blob)).finally(() => this.send({ type: "got" })).then(bitmap => {
       if (of === this.view || !sharp) {
         picture.getContext("2d").drawImage(bitmap, 0, 0, picture.width, picture.height);
         if (sharp) this.sharpView = of;

@@ -244,6 +244,19 @@ async function questions(petra) {
   await petra.until(`location.pathname === "/" && document.querySelector("#connection").textContent === "Connected" && document.querySelector("#quality").hidden`, "the page again");
 }
 
+// Pictures that cannot be decoded hold no other ones up.
+async function badPictures(ana) {
+  await come(ana);
+  await ana.evaluate(`(() => { const real = createImageBitmap; let bad = 3; window.createImageBitmap = (...all) => bad-- > 0 ? Promise.reject(new Error("no memory")) : real(...all); })()`);
+  await ana.evaluate(`document.querySelector("[data-tool=look]").click()`);
+  for (let n = 0; n < 12; n++) {
+    await ana.evaluate(`document.querySelector("#stage").focus()`);
+    await ana.key("ArrowLeft", 0, 37);
+    await ana.sleep(100);
+  }
+  await ana.until(`document.querySelector("#quality").hidden`, "a sharp picture");
+}
+
 // The program takes eight; then it ends.
 async function noRoom(ana, petra) {
   await mark(petra, 0.3);
@@ -270,6 +283,7 @@ try {
   await come(petra);
   for (const claim of [twoNewParts, onePart, removedPart, lateAnswers, titles]) await claim(ana, petra);
   await questions(petra);
+  await badPictures(ana);
   assert.ok(!existsSync(`${folder}/content/regions/part.faces`));
   // The browser remarks on the answer 409 to what would change, as there is no release.
   assert.deepEqual([...ana.complaints, ...petra.complaints].filter(complaint => !/status of 409/.test(complaint)), []);
