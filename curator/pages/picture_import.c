@@ -189,9 +189,10 @@ static int explain(int rc, struct diagnostics *diagnostics)
 		return diagnostics_add(diagnostics, rc, NULL, 0,
 				       "the picture needs more memory than there is: save it "
 				       "smaller");
-	return diagnostics_add(diagnostics, rc, NULL, 0,
-			       "this is not a complete JPEG, PNG or WebP picture: save it again as "
-			       "one");
+	return diagnostics_add(
+		diagnostics, rc, NULL, 0,
+		"this is not a complete JPEG, PNG or WebP picture in RGB: save it again "
+		"as one (CMYK is for printing)");
 }
 
 int picture_import(struct buffer *out, bool *is_png, struct bytes file,

@@ -6,6 +6,7 @@
 #include <webp/encode.h>
 
 #include "curator/pages/exif_orientation.h"
+#include "format/jpeg_to_buffer.h"
 #include "format/picture.h"
 #include "tests/check.h"
 
@@ -125,6 +126,40 @@ static void orientations_that_do_not_exist_mean_nothing(void **state)
 	buffer_finish(&file);
 }
 
+/* A photograph for printing is complete, so to save it again as it is would not help. */
+static void a_picture_for_printing_is_refused_by_its_colours(void **state)
+{
+	struct diagnostics diagnostics = { 0 };
+	struct jpeg_compress_struct codec;
+	struct jpeg_error_mgr errors;
+	unsigned char *bytes = NULL;
+	unsigned long size = 0;
+	JSAMPLE cmyk[8] = { 0 };
+	JSAMPROW row = cmyk;
+	struct buffer out;
+	bool is_png;
+
+	(void)state;
+	codec.err = jpeg_std_error(&errors);
+	jpeg_create_compress(&codec);
+	jpeg_mem_dest(&codec, &bytes, &size);
+	codec.image_width = 2;
+	codec.image_height = 1;
+	codec.input_components = 4;
+	codec.in_color_space = JCS_CMYK;
+	jpeg_set_defaults(&codec);
+	jpeg_start_compress(&codec, TRUE);
+	jpeg_write_scanlines(&codec, &row, 1);
+	jpeg_finish_compress(&codec);
+	jpeg_destroy_compress(&codec);
+	buffer_init(&out, 1 << 20);
+	CHECK(picture_import(&out, &is_png, (struct bytes){ bytes, size }, &diagnostics) ==
+	      -EBADMSG);
+	CHECK(strstr(diagnostics.first.text, "CMYK"));
+	buffer_finish(&out);
+	free(bytes);
+}
+
 static void a_webp_becomes_what_pages_take(void **state)
 {
 	struct picture picture = make_picture(64, 32), again;
@@ -192,6 +227,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(photographs_are_turned_upright),
 		cmocka_unit_test(orientations_that_do_not_exist_mean_nothing),
+		cmocka_unit_test(a_picture_for_printing_is_refused_by_its_colours),
 		cmocka_unit_test(a_webp_becomes_what_pages_take),
 		cmocka_unit_test(a_large_picture_is_made_smaller),
 		cmocka_unit_test(what_is_no_picture_is_refused),
