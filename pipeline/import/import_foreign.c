@@ -190,7 +190,8 @@ static void move_uv(float out[2], const struct uv_move *move, const struct aiVec
 	out[1] = 1 - (move->offset[1] - move->sine * u + move->cosine * v);
 }
 
-/* Those of glTF are light, which may be brighter than 1. */
+/* Those of glTF are light, which may be brighter than 1. Shares may be a little above 1 where a
+ * program has rounded them; bytes are whole numbers. */
 static bool has_bytes(const struct aiMesh *mesh, struct import_foreign_format format)
 {
 	const struct aiColor4D *colours = format.is_linear ? NULL : mesh->mColors[0];
@@ -198,7 +199,7 @@ static bool has_bytes(const struct aiMesh *mesh, struct import_foreign_format fo
 
 	for (uint32_t i = 0; colours && i < mesh->mNumVertices; i++)
 		most = fmaxf(most, fmaxf(colours[i].r, fmaxf(colours[i].g, colours[i].b)));
-	return most > 1;
+	return most >= 2;
 }
 
 static int count_mesh(struct builder *builder, uint32_t index)

@@ -642,6 +642,8 @@ static void colours_of_vertices_may_be_bytes_or_shares(void **state)
 		{ "bytes.obj", "v 0 0 0 51 102 0\nv 1 0 0 51 102 0\nv 0 1 0 0 1 255\nf 1 2 3\n" },
 		{ "shares.obj",
 		  "v 0 0 0 0.2 0.4 0\nv 1 0 0 0.2 0.4 0\nv 0 1 0 0 0.004 1\nf 1 2 3\n" },
+		{ "rounded.obj",
+		  "v 0 0 0 0.2 0.4 0\nv 1 0 0 0.2 0.4 0\nv 0 1 0 0 0.004 1.0039\nf 1 2 3\n" },
 	};
 	const struct import_options options = { 0 };
 	struct diagnostics diagnostics;
