@@ -116,11 +116,12 @@ static void put_transform(struct buffer *text, const struct transform *transform
 
 int scan_key_put(struct buffer *text, const struct content *content, uint32_t scan)
 {
-	const int rc = put_file(text, content, content->scans[scan]);
+	int rc = put_file(text, content, content->scans[scan]);
 
 	if (rc < 0)
 		return rc;
 	if (content->transforms[scan])
 		put_transform(text, content->transforms[scan]);
-	return put_companions(text, content, content->scans[scan]);
+	rc = import_names_files(content->scans[scan]);
+	return rc > 0 ? put_companions(text, content, content->scans[scan]) : rc;
 }

@@ -15,6 +15,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/spill.h"
+#include "base/transient.h"
 #include "pipeline/import/gltf_check.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_foreign.h"
@@ -416,6 +417,18 @@ bool import_is_points(const char *path, uint64_t *points)
 	*points = 0;
 	return import_detect(&format, &file_bytes, path, NULL) == 0 && format == SCAN_PLY &&
 	       import_ply_is_points(path, points);
+}
+
+int import_names_files(const char *path)
+{
+	enum scan_format format = SCAN_UNKNOWN;
+	uint64_t file_bytes;
+	const int rc = import_detect(&format, &file_bytes, path, NULL);
+
+	if (rc < 0)
+		return is_transient(rc) ? rc : 1;
+	return format == SCAN_PLY ? import_ply_names_files(path)
+				  : format != SCAN_STL && format != SCAN_OFF;
 }
 
 static int read_scan(struct mesh *out, const char *path, enum scan_format format,

@@ -84,6 +84,11 @@ must_check int import_check(const char *path, struct diagnostics *diagnostics);
  * read is none. */
 bool import_is_points(const char *path, uint64_t *points);
 
+/* Returns whether a scan may name other files: 0 for STL, OFF, and a PLY without pictures; else 1,
+ * also where it cannot be told; or the negative errno of a failure that may pass. Reads the header
+ * only. */
+must_check int import_names_files(const char *path);
+
 /* Parses the name of an axis: "z", "y" or "x". False: not valid, and *out is unchanged. */
 bool import_axis_named(const char *name, enum import_axis *out);
 /* Parses a unit: "m", "cm", "mm", "in", or the metres in one unit, above 0 and at most 1e9. False:

@@ -11,6 +11,7 @@
 
 #include "base/progress.h"
 #include "base/spill.h"
+#include "base/transient.h"
 #include "pipeline/import/import_files.h"
 #include "pipeline/import/import_limits.h"
 #include "pipeline/import/import_texture.h"
@@ -294,6 +295,18 @@ bool import_ply_is_points(const char *path, uint64_t *points)
 		*points = ply_summary(ply)->vertex_count;
 	ply_close(ply);
 	return is_points;
+}
+
+int import_ply_names_files(const char *path)
+{
+	struct ply *ply;
+	int rc = ply_open(&ply, path, NULL);
+
+	if (rc < 0)
+		return is_transient(rc) ? rc : 1;
+	rc = ply_summary(ply)->texture_count > 0;
+	ply_close(ply);
+	return rc;
 }
 
 int import_ply(struct mesh *out, const char *path, const struct import_options *options,

@@ -13,5 +13,7 @@ must_check int import_ply(struct mesh *out, const char *path, const struct impor
 must_check int import_ply_check(const char *path, struct diagnostics *diagnostics);
 /* import_is_points for a file that is a PLY; *points is set only if it is. */
 bool import_ply_is_points(const char *path, uint64_t *points);
+/* import_names_files for a file that is a PLY. */
+must_check int import_ply_names_files(const char *path);
 
 #endif

@@ -98,6 +98,59 @@ static void a_picture_of_a_page_makes_no_scan_anew(void **state)
 	CHECK(memcmp(&before, &after, sizeof(before)) == 0);
 }
 
+static struct hash key_of(const char *scan)
+{
+	struct diagnostics diagnostics = { 0 };
+	char folder[256], ini[100];
+	struct content content;
+	struct scans *scans;
+	struct hash key;
+
+	snprintf(folder, sizeof(folder), "%.*s", (int)(strrchr(ini_path, '/') - ini_path),
+		 ini_path);
+	snprintf(ini, sizeof(ini), "[model]\nscans = %s\n", scan);
+	scan_write_beside(ini_path, "temple.ini", ini, strlen(ini));
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	CHECK(scans_create(&scans, &content) == 0);
+	CHECK(scans_key(scans, &key, &diagnostics) == 0);
+	scans_destroy(scans);
+	content_release(&content);
+	return key;
+}
+
+/* A photograph that somebody puts there must not cost a hierarchy and all samples. */
+static void a_picture_makes_no_scan_anew_that_names_none(void **state)
+{
+	static const char corners[] = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+			  ply[] = "element vertex 3\nproperty float x\nproperty float y\n"
+				  "property float z\nelement face 1\n"
+				  "property list uchar int vertex_indices\nend_header\n";
+	static const struct {
+		const char *name, *head, *middle;
+		bool names;
+	} cases[] = {
+		{ "plain.ply", "ply\nformat ascii 1.0\n", ply, false },
+		{ "skin.ply", "ply\nformat ascii 1.0\ncomment TextureFile skin.png\n", ply, true },
+		{ "plain.off", "OFF\n3 1 0\n", "", false },
+		{ "plain.stl", "solid x\n", "", false },
+		{ "cut.ply", "ply\nformat ascii 1.0\n", "", true }, /* it cannot be told */
+	};
+	char text[400];
+	(void)state;
+
+	for (size_t i = 0; i < ARRAY_COUNT(cases); i++) {
+		struct hash before, after;
+
+		snprintf(text, sizeof(text), "%s%s%s", cases[i].head, cases[i].middle, corners);
+		scan_write_beside(ini_path, cases[i].name, text, strlen(text));
+		before = key_of(cases[i].name);
+		write_picture("textures/photo.png", 2 + (uint32_t)i % 2);
+		after = key_of(cases[i].name);
+		if (hash_equal(before, after) == cases[i].names)
+			fail_msg("%s", cases[i].name);
+	}
+}
+
 /* Half an import, as a full disk or a power cut leaves it, is none. */
 static void pictures_are_known_even_if_the_reports_were_lost(void **state)
 {
@@ -166,6 +219,8 @@ int main(void)
 		cmocka_unit_test_setup_teardown(a_picture_of_a_page_makes_no_scan_anew, make_folder,
 						remove_folder),
 		cmocka_unit_test_setup_teardown(a_scan_that_changes_meanwhile_is_not_kept,
+						make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_picture_makes_no_scan_anew_that_names_none,
 						make_folder, remove_folder),
 	};
 
