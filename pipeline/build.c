@@ -17,7 +17,7 @@
 #include "pipeline/hierarchy/master.h"
 #include "pipeline/samples/sampler.h"
 
-enum { STAMP_TEXT_BYTES_MAX = 4 << 20, PROGRAM_BYTES_MAX = 256 << 20, LEFTOVER_AGE_S = 3600 };
+enum { STAMP_TEXT_BYTES_MAX = 64 << 20, PROGRAM_BYTES_MAX = 256 << 20, LEFTOVER_AGE_S = 3600 };
 
 /* ---- has anything changed since the last build? */
 

@@ -1,4 +1,5 @@
 /* A build does nothing only where nothing has changed since the last one read its files. */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -56,11 +57,33 @@ static void a_file_that_changes_in_a_folder_within_one_is_seen(void **state)
 	CHECK(!nothing_changed_now() && nothing_changed_now());
 }
 
+/* An archive of photographs, of which pages show some. */
+static void thousands_of_pictures_are_no_hindrance(void **state)
+{
+	enum { PICTURES = 20000 };
+	char path[400], name[200];
+
+	(void)state;
+	memset(name, 'x', sizeof(name) - 1);
+	name[sizeof(name) - 1] = '\0';
+	snprintf(path, sizeof(path), "%s/pictures", temple.folder);
+	CHECK(mkdir(path, 0755) == 0 || errno == EEXIST);
+	snprintf(path, sizeof(path), "%s/pictures/archive", temple.folder);
+	CHECK(mkdir(path, 0755) == 0);
+	for (int i = 0; i < PICTURES; i++) {
+		snprintf(path, sizeof(path), "%s/pictures/archive/%s-%d.jpg", temple.folder, name,
+			 i);
+		CHECK(mknod(path, S_IFREG | 0644, 0) == 0);
+	}
+	CHECK(!nothing_changed_now() && nothing_changed_now());
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(settings_that_change_after_they_were_read_are_built_next),
 		cmocka_unit_test(a_file_that_changes_in_a_folder_within_one_is_seen),
+		cmocka_unit_test(thousands_of_pictures_are_no_hindrance),
 	};
 
 	return cmocka_run_group_tests(tests, temple_make, temple_remove);
