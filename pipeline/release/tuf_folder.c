@@ -90,7 +90,7 @@ static int parse_version(const struct tuf_folder *folder, uint64_t version, cons
 		       ? complain(
 				 folder, name, -EBADMSG,
 				 "is missing, and terminals ask for it: bring it back from another "
-				 "copy of this folder")
+				 "copy of this folder, or see docs/release.md, From a backup")
 		       : rc;
 }
 

@@ -423,6 +423,33 @@ static void a_named_file_that_is_missing_is_not_a_new_folder(void **state)
 	CHECK(publish_again(&report, &target, 1) == 0 && report.release.sequence == 2);
 }
 
+/* docs/release.md: what to do where no copy has such a file. */
+static void without_its_timestamp_a_folder_begins_anew_above_all_numbers(void **state)
+{
+	struct publish_target target = tiny_target(&tiny);
+	struct publish_report report;
+	char path[200];
+
+	(void)state;
+	CHECK(keys_make_tuf_root(tiny.keys_at, &tiny.keys) == 0);
+	tiny_publish(&tiny, NULL);
+	for (uint32_t alone = 0; alone < 2; alone++) {
+		target.tuf_alone = alone > 0;
+		snprintf(path, sizeof(path), "%s/tuf/%d.snapshot.json", tiny.release,
+			 alone ? 101 : 1);
+		CHECK(unlink(path) == 0);
+		CHECK(publish_renew(&report, &target) == -EBADMSG);
+		snprintf(path, sizeof(path), "%s/tuf/timestamp.json", tiny.release);
+		CHECK(unlink(path) == 0);
+		target.above = 100 + 100 * alone;
+		report = tiny_publish_as(&tiny, target);
+		CHECK(report.release.sequence == target.above + 1);
+		check_valid(target.above + 1);
+		target.above = 0;
+		CHECK(publish_renew(&report, &target) == 0 && !report.changed);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -451,6 +478,9 @@ int main(void)
 						tear_down),
 		cmocka_unit_test_setup_teardown(a_named_file_that_is_missing_is_not_a_new_folder,
 						enter, tear_down),
+		cmocka_unit_test_setup_teardown(
+			without_its_timestamp_a_folder_begins_anew_above_all_numbers, enter,
+			tear_down),
 		cmocka_unit_test_setup_teardown(a_target_of_another_path_is_verified_in_both_forms,
 						enter, tear_down),
 		cmocka_unit_test_setup_teardown(

@@ -213,7 +213,8 @@ static inline struct publish_target tiny_target(const struct tiny *tiny)
 					.keys = &tiny->keys };
 }
 
-static inline struct publish_report tiny_publish(const struct tiny *tiny, const char *comment)
+static inline struct publish_report tiny_publish_as(const struct tiny *tiny,
+						    struct publish_target target)
 {
 	static const char *const languages[] = { "en" };
 	struct diagnostics diagnostics = { 0 };
@@ -221,13 +222,11 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 						 .languages = languages,
 						 .language_count = 1,
 						 .diagnostics = &diagnostics };
-	struct publish_target target = tiny_target(tiny);
 	struct page_child children[ROOT_CHILD_COUNT];
 	struct publish_report report;
 	struct info_built built;
 	struct object_store *objects;
 
-	target.comment = comment;
 	target.pack_bytes = 3000; /* several packs even of this */
 	CHECK(object_store_create(&objects) == 0);
 	tiny_hierarchy(objects, &children[ROOT_CHILD_HIERARCHY]);
@@ -239,6 +238,14 @@ static inline struct publish_report tiny_publish(const struct tiny *tiny, const 
 	info_built_finish(&built);
 	object_store_destroy(objects);
 	return report;
+}
+
+static inline struct publish_report tiny_publish(const struct tiny *tiny, const char *comment)
+{
+	struct publish_target target = tiny_target(tiny);
+
+	target.comment = comment;
+	return tiny_publish_as(tiny, target);
 }
 
 #endif
