@@ -121,10 +121,11 @@ static int choose(char out[PATH_MAX], const char *base, const char *content)
 {
 	const char *name = content[1] ? strrchr(content, '/') + 1 : "root";
 	char orphan[PATH_MAX] = "", owner[PATH_MAX];
-	unsigned unclaimed = 0, unused = 0;
+	unsigned unclaimed = 0, unused = 0, closed = 0;
+	int rc, why = 0;
 
 	for (unsigned n = 1; n <= SAME_NAMES_MAX; n++) {
-		int rc = numbered(out, base, name, n);
+		rc = numbered(out, base, name, n);
 
 		if (rc < 0)
 			return rc;
@@ -133,16 +134,23 @@ static int choose(char out[PATH_MAX], const char *base, const char *content)
 			continue;
 		}
 		rc = read_owner(owner, out);
-		if (rc < 0 && rc != -ENOENT)
-			return complain(
-				out, rc,
-				"; it cannot be told whose keys these are: give --keys FOLDER");
-		if (rc < 0)
+		if (rc == -ENOENT) {
 			unclaimed = unclaimed ? unclaimed : n;
-		else if (strcmp(owner, content) == 0)
+		} else if (rc < 0) {
+			closed = n;
+			why = rc;
+		} else if (strcmp(owner, content) == 0) {
 			return 0;
-		else if (access(owner, F_OK) < 0)
+		} else if (access(owner, F_OK) < 0) {
 			memcpy(orphan, out, PATH_MAX);
+		}
+	}
+	if (closed) {
+		rc = numbered(out, base, name, closed);
+		return rc < 0 ? rc
+			      : complain(out, why,
+					 "; it cannot be told whose keys these are: give --keys "
+					 "FOLDER");
 	}
 	if (!unclaimed && !unused)
 		return complain(content, -EMFILE,

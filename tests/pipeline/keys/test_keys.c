@@ -311,6 +311,22 @@ static void keys_are_found_beyond_those_that_were_removed(void **state)
 	CHECK(open_keys("b/content", NULL, "gopura/keys/content-2", false) == 0);
 }
 
+/* As after a build of another temple of that name by root. */
+static void keys_are_found_beyond_those_whose_owner_cannot_be_read(void **state)
+{
+	(void)state;
+
+	run("mkdir -p a/content b/content c/content");
+	CHECK(open_keys("a/content", NULL, "gopura/keys/content", true) == 0);
+	CHECK(open_keys("b/content", NULL, "gopura/keys/content-2", true) == 0);
+	run("rm gopura/keys/content/content && mkdir gopura/keys/content/content");
+	CHECK(open_keys("b/content", NULL, "gopura/keys/content-2", false) == 0);
+	log_set_level((enum log_level) - 1);
+	CHECK(open_keys("c/content", NULL, "", true) == -EISDIR);
+	log_set_level(LOG_LEVEL_ERROR);
+	CHECK(!is_there("gopura/keys/content-3"));
+}
+
 /* A content folder as earlier programs left it. */
 static void make_old(void)
 {
@@ -415,6 +431,7 @@ int main(void)
 		EACH_IN_ITS_FOLDER(without_a_configuration_folder_they_are_in_the_home),
 		EACH_IN_ITS_FOLDER(two_folders_of_one_name_have_keys_of_their_own),
 		EACH_IN_ITS_FOLDER(keys_are_found_beyond_those_that_were_removed),
+		EACH_IN_ITS_FOLDER(keys_are_found_beyond_those_whose_owner_cannot_be_read),
 		EACH_IN_ITS_FOLDER(old_keys_are_moved),
 		EACH_IN_ITS_FOLDER(a_move_to_another_file_system_that_failed_is_done_again),
 		EACH_IN_ITS_FOLDER(old_keys_that_cannot_be_moved_are_used_where_they_are),
