@@ -250,6 +250,23 @@ void build_known_master(struct master **out, struct scans *scans)
 		*out = NULL;
 }
 
+bool build_is_current(struct scans *scans)
+{
+	struct content other = *scans_content(scans);
+	struct scans *alike = NULL;
+	struct master *master;
+	bool is_current;
+
+	other.binary_tree = !other.binary_tree;
+	build_known_master(&master, scans);
+	if (!master && scans_create(&alike, &other) == 0)
+		build_known_master(&master, alike);
+	is_current = master && sampler_is_current(scans, master);
+	master_destroy(master);
+	scans_destroy(alike);
+	return is_current;
+}
+
 int build_samples(struct scans *scans, const struct master *master,
 		  const struct sampler_options *options, struct diagnostics *diagnostics)
 {

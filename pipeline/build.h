@@ -54,6 +54,9 @@ must_check int build_master(struct master **out, struct scans *scans,
 			    struct build_master_report *report, struct diagnostics *diagnostics);
 /* Opens this content's master if it is there and of these scans; otherwise *out is NULL. */
 void build_known_master(struct master **out, struct scans *scans);
+/* Returns whether hierarchy and samples are there and of these scans and settings. The hierarchy
+ * may be of either kind, because a build can be told another than temple.ini has. Reads no scan. */
+bool build_is_current(struct scans *scans);
 /* Renders the samples that are missing, with the master where the scans have no pictures; it is
  * that of build_master. options->master is not used. Negative errno, with a diagnostic. */
 must_check int build_samples(struct scans *scans, const struct master *master,

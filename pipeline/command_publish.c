@@ -12,7 +12,6 @@
 #include "pipeline/build.h"
 #include "pipeline/content/work_lock.h"
 #include "pipeline/release/publish_content.h"
-#include "pipeline/samples/sampler.h"
 
 static const char help[] =
 	"gopura-content publish: make a signed release from what is built, or undo a release\n"
@@ -56,15 +55,11 @@ struct settings {
 /* Nothing is made anew here, and what does not belong together looks wrong on the terminals. */
 static void judge_age(struct scans *scans)
 {
-	struct master *master;
-
-	build_known_master(&master, scans);
-	if (!master || !sampler_is_current(scans, master))
+	if (!build_is_current(scans))
 		fprintf(stderr,
 			"gopura-content publish: warning: the scans or temple.ini have changed since "
 			"hierarchy and samples were made: 'gopura-content build %s' makes them anew\n",
 			scans_content(scans)->folder);
-	master_destroy(master);
 }
 
 static int publish(struct publish_content_report *report, const struct settings *settings)

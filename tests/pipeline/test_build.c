@@ -78,12 +78,32 @@ static void thousands_of_pictures_are_no_hindrance(void **state)
 	CHECK(!nothing_changed_now() && nothing_changed_now());
 }
 
+/* `publish` warns of others. */
+static void samples_by_either_kind_of_hierarchy_are_those_of_today(void **state)
+{
+	struct content content;
+	struct scans *scans;
+
+	(void)state;
+	temple_read(&content);
+	content.binary_tree = true;
+	CHECK(!nothing_changed(&content));
+	temple_read(&content);
+	CHECK(!content.binary_tree && scans_create(&scans, &content) == 0);
+	CHECK(build_is_current(scans));
+	content.sun[0] = -content.sun[0];
+	CHECK(!build_is_current(scans));
+	scans_destroy(scans);
+	content_release(&content);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(settings_that_change_after_they_were_read_are_built_next),
 		cmocka_unit_test(a_file_that_changes_in_a_folder_within_one_is_seen),
 		cmocka_unit_test(thousands_of_pictures_are_no_hindrance),
+		cmocka_unit_test(samples_by_either_kind_of_hierarchy_are_those_of_today),
 	};
 
 	return cmocka_run_group_tests(tests, temple_make, temple_remove);
