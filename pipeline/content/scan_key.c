@@ -114,6 +114,30 @@ static void put_transform(struct buffer *text, const struct transform *transform
 		buffer_put_f64(text, transform->rows[k / 4][k % 4]);
 }
 
+static bool lie_in_one_folder(const char *a, const char *b)
+{
+	const size_t length = (size_t)(strrchr(a, '/') - a) + 1;
+
+	return strncmp(a, b, length) == 0 && !strchr(b + length, '/');
+}
+
+/* Returns 1 if the files that a scan may name are to be put: they are not where an earlier scan of
+ * its folder may name them too. A hundred scans beside thousands of pictures would be a hundred
+ * times as many. */
+static int is_first_to_name(const struct content *content, uint32_t scan)
+{
+	int rc = import_names_files(content->scans[scan]);
+
+	for (uint32_t i = 0; i < scan && rc > 0; i++) {
+		const int earlier = lie_in_one_folder(content->scans[scan], content->scans[i])
+					    ? import_names_files(content->scans[i])
+					    : 0;
+
+		rc = earlier < 0 ? earlier : !earlier;
+	}
+	return rc;
+}
+
 int scan_key_put(struct buffer *text, const struct content *content, uint32_t scan)
 {
 	int rc = put_file(text, content, content->scans[scan]);
@@ -122,6 +146,6 @@ int scan_key_put(struct buffer *text, const struct content *content, uint32_t sc
 		return rc;
 	if (content->transforms[scan])
 		put_transform(text, content->transforms[scan]);
-	rc = import_names_files(content->scans[scan]);
+	rc = is_first_to_name(content, scan);
 	return rc > 0 ? put_companions(text, content, content->scans[scan]) : rc;
 }

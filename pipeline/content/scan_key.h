@@ -6,9 +6,9 @@
 #include "pipeline/content/content.h"
 
 /* Puts name, size and modification time of a scan and of the files beside it and below that it may
- * refer to (mtl, pictures, buffers), if it may name any, and its transform. Returns a negative
- * errno if its folder cannot be listed, or a file cannot be seen now; errors of the buffer stay in
- * it. */
+ * refer to (mtl, pictures, buffers), if it may name any and no earlier scan of its folder may; and
+ * its transform. Returns a negative errno if its folder cannot be listed, or a file cannot be seen
+ * now; errors of the buffer stay in it. */
 must_check int scan_key_put(struct buffer *text, const struct content *content, uint32_t scan);
 
 #endif

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "format/picture.h"
+#include "pipeline/content/scan_key.h"
 #include "tests/check.h"
 #include "tests/pipeline/import/scan_text.h"
 
@@ -209,6 +210,43 @@ static void a_scan_that_changes_meanwhile_is_not_kept(void **state)
 	content_release(&content);
 }
 
+static void a_folder_of_many_scans_is_listed_once(void **state)
+{
+	static const char plain[] = "solid x\n", obj[] = "v 0 0 0\n";
+	struct diagnostics diagnostics = { 0 };
+	struct content content = { .scan_count = 0 };
+	size_t sizes[4] = { 0 };
+	struct buffer text;
+	char folder[256], path[300];
+	(void)state;
+
+	scan_write_beside(ini_path, "a.stl", plain, strlen(plain));
+	scan_write_beside(ini_path, "b.obj", obj, strlen(obj));
+	scan_write_beside(ini_path, "c.obj", obj, strlen(obj));
+	snprintf(folder, sizeof(folder), "%.*s", (int)(strrchr(ini_path, '/') - ini_path),
+		 ini_path);
+	for (uint32_t i = 0; i < 20; i++) {
+		snprintf(path, sizeof(path), "textures/%u.png", i);
+		write_picture(path, 2);
+	}
+	snprintf(path, sizeof(path), "[model]\nscans = a.stl b.obj c.obj textures/d.obj\n");
+	scan_write_beside(ini_path, "temple.ini", path, strlen(path));
+	scan_write_beside(ini_path, "textures/d.obj", obj, strlen(obj));
+	CHECK(content_read(&content, folder, &diagnostics) == 0);
+	buffer_init(&text, 1 << 20);
+	for (uint32_t i = 0; i < content.scan_count; i++) {
+		const size_t before = text.size;
+
+		CHECK(scan_key_put(&text, &content, i) == 0 && text.error == 0);
+		sizes[i] = text.size - before;
+	}
+	CHECK(sizes[1] > 20 * 24 &&
+	      sizes[3] > 20 * 24); /* all pictures, after one that names none */
+	CHECK(sizes[0] < 100 && sizes[2] == sizes[0]);
+	buffer_finish(&text);
+	content_release(&content);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -222,6 +260,8 @@ int main(void)
 						make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(a_picture_makes_no_scan_anew_that_names_none,
 						make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_folder_of_many_scans_is_listed_once, make_folder,
+						remove_folder),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
