@@ -141,15 +141,20 @@ static struct stamp_file stamp_text(struct hash stamp, struct hash root)
 }
 
 /* Sets nothing_changed if the current release was built from exactly these inputs and is complete.
- * What runs out of it is then signed anew, which may fail. */
+ * What runs out of it is then signed anew, which may fail. -EKEYREJECTED: these keys cannot
+ * publish, which is logged. */
 static int renew_if_built(struct build_report *report, const char *stamp_path, struct hash stamp,
 			  const struct publish_content_options *publish)
 {
 	struct stamp_file expected;
 	struct buffer file;
+	int rc;
 
-	if (access(stamp_path, R_OK) < 0 || publish_content_current(&report->publish, publish) < 0)
+	if (access(stamp_path, R_OK) < 0)
 		return 0;
+	rc = publish_content_current(&report->publish, publish);
+	if (rc < 0)
+		return rc == -EKEYREJECTED ? rc : 0;
 	expected = stamp_text(stamp, report->publish.publish.release.root);
 	buffer_init(&file, sizeof(expected.text));
 	report->nothing_changed = buffer_read_file(&file, stamp_path) == 0 &&

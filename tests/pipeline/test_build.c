@@ -97,6 +97,24 @@ static void samples_by_either_kind_of_hierarchy_are_those_of_today(void **state)
 	content_release(&content);
 }
 
+static void keys_that_cannot_publish_are_told_before_the_long_work(void **state)
+{
+	const struct build_options options = { .keys = temple.keys };
+	struct build_report report;
+	struct content content;
+	char command[200];
+
+	(void)state;
+	(void)nothing_changed_now();
+	snprintf(command, sizeof(command), "rm -r '%s'", temple.keys);
+	CHECK(system(command) == 0); /* others are made */
+	temple_put("temple.ini", TEMPLE_INI "[hierarchy]\npatch_triangles = 300\n");
+	temple_read(&content);
+	CHECK(build_content(&report, &content, &options) == -EKEYREJECTED);
+	CHECK(!report.stages[BUILD_HIERARCHY].name);
+	content_release(&content);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -104,6 +122,7 @@ int main(void)
 		cmocka_unit_test(a_file_that_changes_in_a_folder_within_one_is_seen),
 		cmocka_unit_test(thousands_of_pictures_are_no_hindrance),
 		cmocka_unit_test(samples_by_either_kind_of_hierarchy_are_those_of_today),
+		cmocka_unit_test(keys_that_cannot_publish_are_told_before_the_long_work),
 	};
 
 	return cmocka_run_group_tests(tests, temple_make, temple_remove);
