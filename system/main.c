@@ -25,7 +25,8 @@ static const char help[] =
 	"       gopura-setup --grow-files DEVICE --mounted DIR\n"
 	"\n"
 	"  --conf FILE      gopura.conf; if given several times, the first file that exists is read;\n"
-	"                   if none exists, the network is configured by DHCP\n"
+	"                   if none exists, the network is configured by DHCP. Exit status 3 if all was\n"
+	"                   written, but without what could not be read, if that may pass\n"
 	"  --out DIR        write the configuration of network, Wi-Fi, fetcher, health page, host\n"
 	"                   name and time zone, and the list of faults, to this folder\n"
 	"  --boards DIR     board profiles that gopura.conf may name\n"
@@ -42,7 +43,10 @@ static const char help[] =
 	"  gopura-setup --check gopura.conf\n"
 	"  gopura-setup --conf /efi/gopura.conf --conf /media/usb/gopura.conf --out /run/gopura\n";
 
-enum { CONFS_MAX = 4 };
+enum {
+	CONFS_MAX = 4,
+	STATUS_AGAIN = 3, /* exit status: applied without what could not be read now */
+};
 
 struct command {
 	const char *confs[CONFS_MAX];
@@ -217,16 +221,31 @@ static int print_sum(const char *path)
 	return rc == 0 ? 0 : is_transient(rc) ? 2 : 1;
 }
 
-/* Returns what the profile of the terminal's board says of the cache; 0 if there is none. */
-static uint32_t cache_mib(const struct terminal *terminal, const char *boards)
+/* Sets what the profile of the terminal's board says of the cache; 0 if there is none. Returns the
+ * result of reading it. */
+static int read_cache_mib(uint32_t *out, const struct terminal *terminal, const char *boards)
 {
 	struct profile profile;
 	char path[PATH_MAX];
+	int rc;
 
+	*out = 0;
 	if (!terminal->board[0])
 		return 0;
 	snprintf(path, sizeof(path), "%s/%s.ini", boards, terminal->board);
-	return profile_read(&profile, path) == 0 ? profile.cache_mib : 0;
+	rc = profile_read(&profile, path);
+	if (rc == 0)
+		*out = profile.cache_mib;
+	return rc;
+}
+
+/* Returns whether a file could not be read now, but perhaps at the next try. */
+static bool may_pass(const struct diagnostics *diagnostics)
+{
+	for (unsigned i = 0; i < diagnostics->count; i++)
+		if (is_transient(diagnostics_get(diagnostics, i)->error))
+			return true;
+	return false;
 }
 
 static int apply(const struct command *command)
@@ -236,6 +255,7 @@ static int apply(const struct command *command)
 	struct setup setup = { .terminal = &terminal,
 			       .diagnostics = &diagnostics,
 			       .out = command->out };
+	bool again;
 	int rc;
 
 	for (unsigned i = 0; i < command->count && !setup.conf_path; i++)
@@ -251,10 +271,13 @@ static int apply(const struct command *command)
 				command->confs[0]);
 	for (unsigned i = 0; i < diagnostics.count; i++)
 		log_warn("setup", "%s", diagnostics_get(&diagnostics, i)->text);
+	again = may_pass(&diagnostics);
 	if (setup.conf_path)
-		setup.cache_mib = cache_mib(&terminal, command->boards);
+		again |= is_transient(read_cache_mib(&setup.cache_mib, &terminal, command->boards));
 	rc = setup_write(&setup);
 	diagnostics_finish(&diagnostics);
+	if (rc == -EAGAIN || (rc == 0 && again))
+		return STATUS_AGAIN;
 	return rc < 0;
 }
 

@@ -14,6 +14,7 @@
 #include "base/bytes.h"
 #include "base/log.h"
 #include "base/safe_open.h"
+#include "base/transient.h"
 #include "system/terminal_values.h"
 
 enum { FILE_MAX = 65536, WIRED_METRIC = 100, WIFI_METRIC = 600 };
@@ -24,6 +25,7 @@ struct writing {
 	const struct setup *setup;
 	struct buffer text;
 	int rc;
+	bool again; /* a file beside gopura.conf could not be read, which may pass */
 };
 
 static void path_of(const struct writing *writing, const char *name, char out[PATH_MAX])
@@ -125,6 +127,7 @@ static bool copy_authority(struct writing *writing, char out[PATH_MAX])
 		rc = -errno;
 	/* The rest of the set-up continues. Without the file the fetcher trusts the system's
 	 * authorities. */
+	writing->again |= is_transient(rc);
 	if (rc < 0)
 		log_error("setup", "%s: %s", setup->terminal->ca, open_problem(rc));
 	else if (!is_plain_word(out))
@@ -415,5 +418,5 @@ int setup_write(const struct setup *setup)
 	write_time_zone(&writing);
 	write_host_name(&writing);
 	buffer_finish(&writing.text);
-	return writing.rc;
+	return writing.rc == 0 && writing.again ? -EAGAIN : writing.rc;
 }

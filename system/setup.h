@@ -15,7 +15,8 @@ struct setup {
 };
 
 /* Writes all files. Each is complete or unchanged. Returns 0, or the negative errno of the first
- * file that could not be written (logged). */
+ * file that could not be written (logged). -EAGAIN: all were, but without the certificate
+ * authority, which could not be read now. */
 must_check int setup_write(const struct setup *setup);
 
 /* Maximum length of a name: the SSID in hexadecimal, '=', the extension and the end. */

@@ -341,7 +341,8 @@ static void look_for_profile(const char *boards, char *name, unsigned line,
 	char path[PATH_MAX], known[160];
 
 	snprintf(path, sizeof(path), "%s/%s.ini", boards, name);
-	if (!*name || access(path, R_OK) == 0)
+	/* One that cannot be looked up now may be there. */
+	if (!*name || access(path, R_OK) == 0 || is_transient(-errno))
 		return;
 	list_profiles(boards, known, sizeof(known));
 	if (known[0])

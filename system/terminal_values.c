@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <ctype.h>
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -10,6 +11,8 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+
+#include "base/transient.h"
 
 #define LETTERS     "abcdefghijklmnopqrstuvwxyz"
 #define BIG_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -79,7 +82,8 @@ bool terminal_set_time_zone(const struct setting *setting, void *target, const c
 	if (!only(value, LETTERS BIG_LETTERS DIGITS "_+-/") || *value == '/')
 		return false;
 	snprintf(path, sizeof(path), "/usr/share/zoneinfo/%s", value);
-	return stat(path, &found) == 0 && S_ISREG(found.st_mode) &&
+	/* One that cannot be looked up now may be right. */
+	return (stat(path, &found) == 0 ? S_ISREG(found.st_mode) : is_transient(-errno)) &&
 	       put(terminal->time_zone, sizeof(terminal->time_zone), value);
 }
 
