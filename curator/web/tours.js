@@ -262,6 +262,7 @@ async function save() {
   saving = true;
   showState("Saving …");
   tell("");
+  if (!tour) showProblems([]); // no change of a tour will ask again
   clashes = []; // they were shown: mine are wanted
   showClashes();
   let isSaved = false, withOthers;

@@ -366,6 +366,7 @@ async function removesAll(browser) {
   await browser.click("#save");
   await saved(browser);
   assert.deepEqual(await tours(browser), []);
+  assert.equal(await text(browser, "#problems"), "");
   await browser.picture(`${folder}/none.png`);
   await browser.click("#history-box summary");
   await browser.until(`document.querySelectorAll("#versions li").length > 1`, "the versions");
