@@ -418,7 +418,7 @@ static void the_shape_is_known_without_the_mesh(void **state)
 
 static void a_second_import_comes_from_the_cache_until_something_changes(void **state)
 {
-	char folder[256], path[512];
+	char folder[256], path[512], other[sizeof(triangle) + 8];
 	bool from_cache;
 	uint32_t triangles;
 	FILE *file;
@@ -445,9 +445,14 @@ static void a_second_import_comes_from_the_cache_until_something_changes(void **
 	scan_write_beside(path, "temple.ini", "[model]\nscans = tower.ply\n", 26);
 	import_of(folder, &from_cache, &triangles);
 	CHECK(!from_cache && triangles == 1);
+	/* a file beside a scan that names none changes nothing, the scan itself does */
 	scan_write_beside(path, "tower.mtl", "x", 1);
 	import_of(folder, &from_cache, &triangles);
-	CHECK(!from_cache);
+	CHECK(from_cache);
+	snprintf(other, sizeof(other), "%s0 0 0\n", triangle);
+	scan_write_beside(path, "tower.ply", other, strlen(other));
+	import_of(folder, &from_cache, &triangles);
+	CHECK(!from_cache && triangles == 1);
 	remove_folder(folder);
 }
 
