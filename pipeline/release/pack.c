@@ -42,16 +42,19 @@ static int path_of(char path[PATH_MAX], const char *release, const char *folder,
 		       : -ENAMETOOLONG;
 }
 
-/* Returns the size of a pack; 0: it is missing. */
-static uint64_t pack_bytes(const char *release, struct hash name)
+/* Returns the size of each pack that a locator names, 0 if it is missing; owned by the caller.
+ * NULL: no memory. */
+static uint64_t *measure_packs(const char *release, const struct locator *locator)
 {
+	uint64_t *bytes = calloc(locator->pack_count + 1, sizeof(*bytes));
 	char path[PATH_MAX];
 	struct stat status;
 
-	return path_of(path, release, "packs", name) == 0 && access(path, R_OK) == 0 &&
-			       stat(path, &status) == 0
-		       ? (uint64_t)status.st_size
-		       : 0;
+	for (uint32_t i = 0; bytes && i < locator->pack_count; i++)
+		if (path_of(path, release, "packs", locator->packs[i]) == 0 &&
+		    access(path, R_OK) == 0 && stat(path, &status) == 0)
+			bytes[i] = (uint64_t)status.st_size;
+	return bytes;
 }
 
 static bool holds(uint64_t bytes, const struct locator_block *block)
@@ -211,20 +214,6 @@ static int place_all(struct packer *packer)
 	return rc < 0 ? rc : end_pack(packer);
 }
 
-static int look_for_packs_before(struct packer *packer)
-{
-	const struct locator *before = packer->options->before;
-
-	if (!before)
-		return 0;
-	packer->before_bytes = calloc(before->pack_count + 1, sizeof(*packer->before_bytes));
-	if (!packer->before_bytes)
-		return -ENOMEM;
-	for (uint32_t i = 0; i < before->pack_count; i++)
-		packer->before_bytes[i] = pack_bytes(packer->options->release, before->packs[i]);
-	return 0;
-}
-
 /* Numbers the packs: first the reused old ones in their order, then the new ones. */
 static int make_locator(struct packer *packer, struct locator *locator)
 {
@@ -330,8 +319,10 @@ int pack_release(const struct pack_options *options, struct pack_result *result)
 
 	*result = (struct pack_result){ 0 };
 	buffer_init(&packer.pack, (size_t)PACK_BYTES_MAX + PACK_BYTES);
-	if (rc == 0)
-		rc = look_for_packs_before(&packer);
+	if (rc == 0 && options->before) {
+		packer.before_bytes = measure_packs(options->release, options->before);
+		rc = packer.before_bytes ? 0 : -ENOMEM;
+	}
 	if (rc == 0)
 		rc = place_all(&packer);
 	if (rc == 0)
@@ -366,22 +357,21 @@ int pack_read_locator(struct locator *out, const char *release, struct hash root
 int pack_read_whole(struct locator *out, const char *release, struct hash root)
 {
 	int rc = pack_read_locator(out, release, root);
-	uint32_t pack = UINT32_MAX;
-	uint64_t bytes = 0;
+	uint64_t *bytes = rc == 0 ? measure_packs(release, out) : NULL;
 
+	if (rc == 0 && !bytes)
+		rc = -ENOMEM;
 	for (uint32_t i = 0; rc == 0 && i < out->block_count; i++) {
-		const struct locator_block *block = &out->blocks[i];
+		const uint32_t pack = out->blocks[i].pack;
 		char hex[HASH_HEX_BYTES];
 
-		if (block->pack != pack)
-			bytes = pack_bytes(release, out->packs[block->pack]);
-		pack = block->pack;
-		if (holds(bytes, block))
+		if (holds(bytes[pack], &out->blocks[i]))
 			continue;
 		hash_to_hex(out->packs[pack], hex);
 		log_warn("pipeline", "%s/packs/%s is %s", release, hex,
-			 bytes > 0 ? "cut off" : "missing");
+			 bytes[pack] > 0 ? "cut off" : "missing");
 		rc = -ENODATA;
 	}
+	free(bytes);
 	return rc;
 }
