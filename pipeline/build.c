@@ -91,7 +91,6 @@ static int make_stamp(struct hash *out, struct sources *sources,
 {
 	const struct content *content = sources_content(sources);
 	static const char *const names[] = { "parts.json", "tours.json", "scenes.json" };
-	static const char *const folders[] = { "pages", "pictures", "regions", "scenes" };
 	char path[CONTENT_PATH_BYTES + 16];
 	struct diagnostics diagnostics = { 0 };
 	struct hash scans;
@@ -113,8 +112,8 @@ static int make_stamp(struct hash *out, struct sources *sources,
 		snprintf(path, sizeof(path), "%s/%s", content->folder, names[i]);
 		put_file(&text, path);
 	}
-	for (size_t i = 0; i < ARRAY_COUNT(folders); i++) {
-		snprintf(path, sizeof(path), "%s/%s", content->folder, folders[i]);
+	for (const char *const *folder = content_folders; *folder; folder++) {
+		snprintf(path, sizeof(path), "%s/%s", content->folder, *folder);
 		put_folder(&text, path);
 	}
 	*out = hash_of(buffer_bytes(&text));

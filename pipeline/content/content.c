@@ -13,6 +13,8 @@
 #include "pipeline/import/alignment.h"
 #include "storage/info_tools.h"
 
+const char *const content_folders[] = { "pages", "pictures", "regions", "scenes", NULL };
+
 static void set_defaults(struct content *content, const char *folder)
 {
 	const char *slash;

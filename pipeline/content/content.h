@@ -50,6 +50,9 @@ enum content_quality_rule {
 	CONTENT_QUALITY_FEATURES, /* those with more feature points */
 };
 
+/* Folders beside temple.ini that hold what is written about the parts; NULL ends the list. */
+extern const char *const content_folders[];
+
 struct content {
 	char folder[CONTENT_PATH_BYTES]; /* as given, without a trailing slash */
 	uint64_t settings_bytes;         /* of temple.ini, looked at before it was read */

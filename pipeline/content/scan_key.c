@@ -33,11 +33,10 @@ static int put_file(struct buffer *text, const struct content *content, const ch
  * picture of a page changes no scan. */
 static bool is_for_pages(const struct content *content, const char *path)
 {
-	static const char *const names[] = { "pages", "pictures", "regions", "scenes" };
 	const char *name = path + strlen(content->folder);
 
-	for (size_t i = 0; i < ARRAY_COUNT(names); i++)
-		if (name[0] == '/' && strcmp(name + 1, names[i]) == 0)
+	for (const char *const *folder = content_folders; *folder; folder++)
+		if (name[0] == '/' && strcmp(name + 1, *folder) == 0)
 			return true;
 	return false;
 }

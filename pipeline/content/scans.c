@@ -287,23 +287,21 @@ static int save_reports(const struct scans *scans, struct import_report *reports
 }
 
 /* A scan that is still being copied would be kept as it was half-way, under the key of the time
- * before. After a change the next question for the key looks anew. */
+ * before. */
 static int check_unchanged(struct scans *scans, struct diagnostics *diagnostics)
 {
 	const struct hash before = scans->key;
-	int rc = make_key(scans);
+	struct hash now;
+	int rc;
 
-	if (rc == 0 && !hash_equal(scans->key, before))
-		rc = -ESTALE;
-	scans->has_key = rc == 0;
-	if (rc == -ESTALE)
-		return diagnostics_add(
-			diagnostics, rc, scans->content->folder, 0,
-			"a scan or a file beside it was changed while it was read; "
-			"if it is being copied, wait for the end, then do this again");
-	return rc < 0 ? diagnostics_add(diagnostics, rc, scans->content->folder, 0,
-					"its files cannot be listed: %s", strerror(-rc))
-		      : 0;
+	scans->has_key = false;
+	rc = scans_key(scans, &now, diagnostics);
+	if (rc < 0 || hash_equal(now, before))
+		return rc;
+	scans->has_key = false; /* it may still be growing */
+	return diagnostics_add(diagnostics, -ESTALE, scans->content->folder, 0,
+			       "a scan or a file beside it was changed while it was read; "
+			       "if it is being copied, wait for the end, then do this again");
 }
 
 static int import_and_save(struct scans *scans, const char *path, struct diagnostics *diagnostics)
