@@ -115,6 +115,14 @@ void *spill_alloc(size_t bytes)
 	return bytes < SPILL_MIN_BYTES ? calloc(1, bytes ? bytes : 1) : alloc_large(bytes);
 }
 
+const char *spill_folder_cure(int rc)
+{
+	return rc == -ENOENT || rc == -ENOTDIR || rc == -EACCES || rc == -EROFS
+		       ? "no temporary file can be made in TMPDIR, or without it in /var/tmp; set "
+			 "TMPDIR to a folder on a disk that may be written to"
+		       : NULL;
+}
+
 static void *resize_large(struct large entry, size_t bytes)
 {
 	/* zeroed even if the array was larger once */

@@ -25,6 +25,9 @@ void spill_set_folder(const char *folder);
 /* Returns zeroed memory; spill_free ends it. NULL: errno is ENOMEM, ENOSPC (the disk is full), or
  * an error of the folder. */
 must_check void *spill_alloc(size_t bytes);
+/* Returns what to do where that failed of the folder of the temporary files, as a sentence. NULL:
+ * rc is another failure. */
+const char *spill_folder_cure(int rc);
 /* Changes how many items of its type `array`, a pointer, has; it may also come from malloc, or be
  * NULL with old_count 0. Items that are added are zeroed. Returns 0, or a negative errno as above:
  * array is unchanged. */

@@ -8,6 +8,7 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
+#include "base/spill.h"
 #include "pipeline/import/import.h"
 
 /* Of memory, for each byte of a scan and of the files that it names. */
@@ -41,10 +42,7 @@ static inline const char *import_lack(int rc)
 	if (rc == -ENOSPC)
 		return "the disk has no room for the imported mesh; make some, or set TMPDIR to a "
 		       "larger disk";
-	if (rc == -ENOENT || rc == -ENOTDIR || rc == -EACCES || rc == -EROFS)
-		return "no temporary file can be made in TMPDIR, or without it in /var/tmp; set "
-		       "TMPDIR to a folder on a disk that may be written to";
-	return strerror(-rc);
+	return spill_folder_cure(rc) ? spill_folder_cure(rc) : strerror(-rc);
 }
 
 #endif

@@ -260,11 +260,8 @@ int reconstruct(struct mesh *out, const struct reconstruct_scan *scans, uint32_t
 			diagnostics, rc, NULL, 0,
 			"the disk has no room for the points and distances; make some, set TMPDIR "
 			"to a larger disk, or choose larger leaf cubes");
-	else if (rc == -ENOENT || rc == -ENOTDIR || rc == -EACCES || rc == -EROFS)
-		diagnostics_add(
-			diagnostics, rc, NULL, 0,
-			"no temporary file can be made in TMPDIR, or without it in "
-			"/var/tmp; set TMPDIR to a folder on a disk that may be written to");
+	else if (spill_folder_cure(rc))
+		diagnostics_add(diagnostics, rc, NULL, 0, "%s", spill_folder_cure(rc));
 	else if (rc < 0)
 		diagnostics_add(diagnostics, rc, NULL, 0, "%s; choose larger leaf cubes",
 				strerror(-rc));
