@@ -31,6 +31,7 @@ struct information_view_picture {
 	bool broken;            /* arrived but cannot be decoded; it is not requested again */
 	struct picture decoded; /* rgba NULL: not loaded */
 	uint64_t used;          /* value of turn at its last use, to evict the oldest */
+	uint32_t child;         /* of the info page; set where it is wanted */
 };
 
 struct information_view {
@@ -48,9 +49,10 @@ struct information_view {
 
 	struct information_view_picture *pictures; /* owned; indexed like info_picture */
 	uint32_t picture_count;
-	uint64_t turn;           /* counts the uses of pictures */
-	struct hash spoken_hash; /* of the spoken text that was asked for last; zero: none */
-	struct buffer spoken;    /* its bytes; empty: they have not arrived */
+	uint64_t turn;             /* counts the uses of pictures */
+	uint32_t uses[WANTED_MAX]; /* which picture was used in turn n, at n % WANTED_MAX */
+	struct hash spoken_hash;   /* of the spoken text that was asked for last; zero: none */
+	struct buffer spoken;      /* its bytes; empty: they have not arrived */
 };
 
 int information_view_create(struct information_view **out,
@@ -78,6 +80,7 @@ static void forget_pictures(struct information_view *view)
 	free(view->pictures);
 	view->pictures = NULL;
 	view->picture_count = 0;
+	view->turn = 0;
 }
 
 void information_view_destroy(struct information_view *view)
@@ -121,18 +124,37 @@ static uint32_t picture_index(const struct information_view *view,
 	return (uint32_t)(picture - info_picture(view->info, 0));
 }
 
+static void note_use(struct information_view *view, uint32_t picture)
+{
+	view->pictures[picture].used = ++view->turn;
+	view->uses[view->turn % WANTED_MAX] = picture;
+}
+
+/* Returns the child of the info page with that name; 0, which is the database: there is none. */
+static uint32_t find_child(const struct information_view *view, struct hash hash)
+{
+	for (uint32_t c = 1; c < view->page.child_count; c++)
+		if (hash_equal(view->page.children[c].hash, hash))
+			return c;
+	return 0;
+}
+
 static bool on_picture(void *data, const char *name, struct found_picture *out)
 {
 	struct information_view *view = data;
 	const struct info_picture *picture =
 		view->info ? info_find_picture(view->info, name) : NULL;
 	struct information_view_picture *own;
+	bool wanted;
 
 	if (!picture)
 		return false;
 	own = &view->pictures[picture_index(view, picture)];
-	own->used = ++view->turn;
-	own->wanted = !own->decoded.rgba && !own->broken;
+	note_use(view, picture_index(view, picture));
+	wanted = !own->decoded.rgba && !own->broken;
+	if (wanted && !own->wanted)
+		own->child = find_child(view, picture->hash);
+	own->wanted = wanted;
 	*out = (struct found_picture){
 		.picture = own->decoded.rgba ? &own->decoded : NULL,
 		.width_px = picture->width_px,
@@ -204,7 +226,7 @@ static bool give_picture(struct information_view *view, struct hash hash, struct
 			continue;
 		ours = true;
 		own->wanted = false;
-		own->used = ++view->turn; /* the new one is not the one to go */
+		note_use(view, i); /* the new one is not the one to go */
 		if (!own->decoded.rgba)
 			decode_picture(own, picture->name, object);
 		let_oldest_pictures_go(view);
@@ -431,22 +453,12 @@ static struct message_want database_want(const struct information_view *view)
 	return want;
 }
 
-/* Adds the child of the info page with that name. Returns how many there are then. */
-static uint32_t add_want(const struct information_view *view, struct hash hash,
-			 struct message_want *out, uint32_t count, uint32_t most)
+/* child 0: there is none. */
+static void add_want(const struct information_view *view, uint32_t child, struct message_want *out,
+		     uint32_t *count, uint32_t most)
 {
-	for (uint32_t c = 1; c < view->page.child_count && count < most; c++)
-		if (hash_equal(view->page.children[c].hash, hash))
-			out[count++] = child_want(view, c);
-	return count;
-}
-
-/* What was asked for long ago, such as a row that scrolled by, is wanted when it is asked for
- * again. */
-static bool is_wanted(const struct information_view *view,
-		      const struct information_view_picture *own)
-{
-	return own->wanted && view->turn - own->used < WANTED_MAX;
+	if (child > 0 && *count < most)
+		out[(*count)++] = child_want(view, child);
 }
 
 uint32_t information_view_wants(const struct information_view *view, struct message_want *out,
@@ -469,10 +481,16 @@ uint32_t information_view_wants(const struct information_view *view, struct mess
 	if (view->page.child_count > 0 && !view->database_here)
 		out[count++] = database_want(view);
 	if (!hash_is_zero(view->spoken_hash) && view->spoken.size == 0)
-		count = add_want(view, view->spoken_hash, out, count, most);
-	for (uint32_t i = 0; i < view->picture_count; i++)
-		if (is_wanted(view, &view->pictures[i]))
-			count = add_want(view, info_picture(view->info, i)->hash, out, count, most);
+		add_want(view, find_child(view, view->spoken_hash), out, &count, most);
+	/* What was asked for long ago, such as a row that scrolled by, is wanted when it is asked
+	 * for again. */
+	for (uint64_t turn = view->turn; turn > 0 && view->turn - turn < WANTED_MAX; turn--) {
+		const struct information_view_picture *own =
+			&view->pictures[view->uses[turn % WANTED_MAX]];
+
+		if (own->wanted && own->used == turn)
+			add_want(view, own->child, out, &count, most);
+	}
 	return count;
 }
 
