@@ -87,7 +87,7 @@ static int write_materials(const struct mesh *mesh, const char *path, int stem)
 /* ---- the mesh */
 
 /* Colours of vertices are no part of the format, but what most programs write and read. Beside
- * textures they are only means of these. */
+ * textures they are only means of these, and left out. */
 static void put_vertices(struct chunk_file *file, const struct mesh *mesh)
 {
 	const bool has_colours = mesh->colours && mesh->texture_count == 0;

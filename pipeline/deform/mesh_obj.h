@@ -6,8 +6,8 @@
 
 /* path ends with ".obj". Beside it, with its name: NAME.mtl, and NAME-N.png for each texture; one
  * of a single pixel is a colour in the MTL. Without textures it is the OBJ alone, with the colours
- * of its vertices. Each file appears when it is complete, the OBJ last. -EINVAL: the path
- * has no such end; -ENAMETOOLONG; or another negative errno. */
+ * of its vertices. Each file appears when it is complete, the OBJ last. -EINVAL: the path has no
+ * such end; -ENAMETOOLONG; or another negative errno. */
 must_check int mesh_obj_write(const struct mesh *mesh, const char *path);
 
 #endif

@@ -45,9 +45,9 @@ struct hash master_stamp(struct hash scans_key, const struct master_options *opt
 /* Builds a master in folder (DIR/.work/master). The folder is created if needed. What interrupted
  * builds of other stamps left there is removed before, other older files once this master is
  * complete. What one of this stamp left is used, or made again if it is damaged. The mesh is
- * borrowed. *report is always set; it has no levels if another process
- * was faster, completed this master and removed what both worked on. Returns -EINVAL if no triangle
- * has an area, the errors of multires_build, or those of the disk. */
+ * borrowed. *report is always set; it has no levels if another process was faster, completed this
+ * master and removed what both worked on. Returns -EINVAL if no triangle has an area, the errors of
+ * multires_build, or those of the disk. */
 must_check int master_build(const char *folder, const struct mesh *mesh, struct hash stamp,
 			    const struct master_options *options, struct master_report *report);
 

@@ -49,8 +49,7 @@ struct builder {
 	uint64_t vertices, triangles; /* sums over all instances, counted in the first pass */
 	uint64_t skipped;             /* points and lines that were skipped */
 	bool has_colours, has_textures;
-	bool has_bytes; /* colours of vertices are 0..255, as MeshLab writes them in OFF; not 0..1
-			 */
+	bool has_bytes; /* colours of vertices are 0..255, as MeshLab writes in OFF; else 0..1 */
 };
 
 /* Converts a colour to a byte; linear ones with the sRGB transfer function, IEC 61966-2-1. */

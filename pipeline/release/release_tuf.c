@@ -284,7 +284,9 @@ static int stage_timestamp(struct next *next, uint32_t snapshot)
 {
 	const struct tuf_file none = { .json = NULL };
 	const int64_t now_s = clock_wall_s();
-	const uint32_t last = next->folder.timestamp.version;
+	/* Never below the snapshot's: where a folder was brought back from a backup, that is above
+	 * all that terminals have seen (struct publish_target, above). */
+	const uint32_t after = next->folder.timestamp.version + 1;
 	struct tuf_staged kept = { .name = "" };
 	const bool is_new = next->files[TUF_SNAPSHOT].name[0] != '\0';
 	cJSON *content;
@@ -294,8 +296,7 @@ static int stage_timestamp(struct next *next, uint32_t snapshot)
 		tuf_staged_finish(&kept);
 		return complain(next->folder.place.release, "tuf", rc);
 	}
-	content = naming(tuf_next_content(&none, TUF_TIMESTAMP,
-					  last + 1 > snapshot ? last + 1 : snapshot,
+	content = naming(tuf_next_content(&none, TUF_TIMESTAMP, after > snapshot ? after : snapshot,
 					  now_s + next->timestamp_life_s),
 			 "snapshot", snapshot, is_new ? &next->files[TUF_SNAPSHOT] : &kept,
 			 !is_new || !next->unsigned_folder);

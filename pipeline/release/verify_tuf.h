@@ -6,9 +6,8 @@
 
 /* Goes from tuf/1.root.json to the target (its path; NULL: release.json) as a client without
  * anything would, and compares that with release_file, the bytes of release.json. now_s as in
- * verify_options. Returns
- * 0, also where there is no tuf/1.root.json and release.json names none; otherwise walk's
- * diagnostics say what is wrong. */
+ * verify_options. Returns 0, also where there is no tuf/1.root.json and release.json names none;
+ * otherwise walk's diagnostics say what is wrong. */
 must_check int verify_tuf(struct verify_walk *walk, struct bytes release_file, const char *target,
 			  int64_t now_s);
 

@@ -62,8 +62,8 @@ int display_fd(const struct display *display);
  * readable; -1: never. */
 int display_wait_ms(const struct display *display);
 /* Handles flips, hot-plug and window events. -ETIMEDOUT: a flip did not complete in time; the panel
- * or its driver hangs. -ESTALE: a panel of another size was plugged in; only a new
- * process can use it. Other negative errno: the card or the timer cannot be read. */
+ * or its driver hangs. -ESTALE: a panel of another size was plugged in; only a new process can use
+ * it. Other negative errno: the card or the timer cannot be read. */
 must_check int display_dispatch(struct display *display);
 
 /* Returns whether a frame may be drawn now: the last one is on the panel. */
