@@ -5,9 +5,7 @@
 # the server is good again. Then a new root after a portal, through the fetcher alone.
 set -eu
 cd "$(dirname "$0")/../.."
-tool=build/tests/tools/fetch_tool fetch=build/gopura-fetch
-for program in "$tool" "$fetch"; do [ -x "$program" ] || make -s "$program"; done
-folder=$(mktemp -d)
+. tests/e2e/lib-fetch.sh
 server=
 pids=()
 fail() { echo "FAIL: $*" >&2; tail -n 20 "$folder/fetch.log" >&2 || true; exit 1; }

@@ -5,9 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 command -v nginx >/dev/null || { echo "nginx is not installed"; exit 77; }
 . tests/e2e/lib-server.sh
-tool=build/tests/tools/fetch_tool fetch=build/gopura-fetch
-for program in "$tool" "$fetch"; do [ -x "$program" ] || make -s "$program"; done
-folder=$(mktemp -d)
+. tests/e2e/lib-fetch.sh
 fetch_pid='' hung=''
 end_all() {
 	[ -z "$hung" ] || kill -KILL $hung 2>/dev/null || true

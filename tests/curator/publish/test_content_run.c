@@ -7,46 +7,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/check.h"
-
-static char folder[64], program[128];
-
-static int start(void **state)
-{
-	struct diagnostics diagnostics = { 0 };
-
-	(void)state;
-	snprintf(folder, sizeof(folder), "/tmp/gopura-content-run-XXXXXX");
-	CHECK(mkdtemp(folder));
-	CHECK(publish_files_make(folder, &diagnostics) == 0);
-	snprintf(program, sizeof(program), "%s/program", folder);
-	return 0;
-}
-
-static int stop(void **state)
-{
-	static const char *const names[] = { "/.curator/publish", "/.curator", "" };
-	char path[128];
-
-	(void)state;
-	for (unsigned n = 0; n < ARRAY_COUNT(names); n++) {
-		snprintf(path, sizeof(path), "%s%s", folder, names[n]);
-		bytes_remove_folder(path);
-	}
-	return 0;
-}
+#include "tests/curator/publish/publish_folder.h"
 
 /* Runs a script in the place of gopura-content, which must fail. */
 static void run(const char *script, char message[PUBLISH_MESSAGE_BYTES])
 {
+	char program[128], text[2048];
 	const struct content_run_options options = { .program = program,
 						     .folder = folder,
 						     .release = folder,
 						     .comment = "",
 						     .stop_fd = -1 };
-	char text[2048];
 	const int bytes = snprintf(text, sizeof(text), "#!/bin/sh\n%s\nexit 1\n", script);
 
+	snprintf(program, sizeof(program), "%s/program", folder);
 	CHECK(bytes < (int)sizeof(text));
 	CHECK(bytes_write_file((struct bytes){ (const uint8_t *)text, (size_t)bytes }, program) ==
 	      0);
